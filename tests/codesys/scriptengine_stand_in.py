@@ -13,8 +13,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from tests.st.faults import StError
-from tests.st.library import compile_st
+from tests.harness.faults import StError
+from tests.harness.library import compile_st
 
 BUILD = "{97F48D64-A2A3-4856-B640-75C046E37EA9}"
 SCRIPT = "{194b48a9-ab51-43ae-b9a9-51d3edaaddf3}"

@@ -12,9 +12,9 @@ from softkin import Scara2Z
 from derive.__main__ import OUTPUT
 from derive.emit.st.contract import load
 from tests.codesys.parts import FILES, all_parts
-from tests.st import ast
-from tests.st.library import compile_st
-from tests.st.parse import parse
+from tests.harness import ast
+from tests.harness.library import compile_st
+from tests.harness.parse import parse
 
 ROOT = OUTPUT.parent
 GUIDE = (ROOT / "docs" / "CODESYS.md").read_text(encoding="utf-8")

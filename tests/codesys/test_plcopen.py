@@ -18,8 +18,8 @@ from derive.emit.plcopen.objects import Object, objects_of
 from tests.codesys.parts import FILES, Part, all_parts, parts_of
 from tests.codesys.plcopen_reader import Element, folders, identifiers, listed, parse, wholes
 from tests.codesys.typed_copy import declared_variables, typed_variables
-from tests.st.library import compile_st
-from tests.st.parse import parse as parse_st
+from tests.harness.library import compile_st
+from tests.harness.parse import parse as parse_st
 
 ROOT = OUTPUT / "st"
 EVERYTHING = ROOT / "softkin.xml"

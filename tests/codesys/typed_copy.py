@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from tests.codesys.plcopen_reader import NAMESPACE, Element
-from tests.st import ast
+from tests.harness import ast
 
 Variables = list[tuple[str, bool, str, str, str]]
 """Section, whether it is constant, name, type, and the initial value where it is a plain one."""

@@ -1,0 +1,52 @@
+"""Batch calls that every row is also asked of the scalar call: where an edge is at stake, both must see it the same."""
+
+from __future__ import annotations
+
+import numpy as np
+import softkin
+from numpy.typing import ArrayLike
+from softkin import KinematicsError, Status
+
+from tests.catalogue.closure import Array
+
+SAME = 1e-4
+"""Degrees or lengths: at a stretched arm rounding takes half of the digits."""
+
+
+def forward(robot: softkin.Mechanism, axes: Array) -> tuple[Array, Array, Array, Array]:
+    """`forward_batch`; positions, configurations and statuses are those of the scalar calls."""
+    positions, rotations, configurations, statuses = robot.forward_batch(axes)
+    for row, values in enumerate(axes):
+        try:
+            frame, configuration = robot.forward(values)
+        except KinematicsError as error:
+            assert error.status == statuses[row]
+        else:
+            assert statuses[row] == Status.OK
+            assert configuration == tuple(configurations[row])
+            assert np.allclose(frame.position, positions[row], rtol=1e-12, atol=1e-9)
+    return positions, rotations, configurations, statuses
+
+
+def inverse(
+    robot: softkin.Mechanism,
+    positions: Array,
+    rotations: Array,
+    configurations: ArrayLike | None = None,
+    references: ArrayLike | None = None,
+) -> tuple[Array, Array]:
+    """`inverse_batch`; axes and statuses are those of the scalar calls."""
+    found, statuses = robot.inverse_batch(positions, rotations, configurations, references)
+    count = len(positions)
+    given = robot.DEFAULT_CONFIGURATION if configurations is None else configurations
+    codes = np.broadcast_to(given, (count, len(robot.CONFIGURATION))).tolist()
+    near = np.broadcast_to(np.zeros(len(robot.AXES)) if references is None else references, found.shape)
+    for row in range(count):
+        try:
+            axes = robot.inverse((positions[row], rotations[row]), codes[row], near[row])
+        except KinematicsError as error:
+            assert error.status == statuses[row]
+        else:
+            assert statuses[row] == Status.OK
+            assert np.abs(np.subtract(axes, found[row])).max() < SAME
+    return found, statuses

@@ -1,0 +1,190 @@
+"""Corners: poses where two or three singular factors vanish together, and poses beside them at every decade of distance.
+
+The factors are what the inverse derivation divides by or takes the root of, branch by branch and measure by measure; here they
+are functions of axis values that Newton's method drives to zero. Whether an answer is right is not asked of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache, partial
+from itertools import combinations
+
+import numpy as np
+import sympy as sp
+from numpy.random import Generator
+
+from derive.description.mechanism import Mechanism
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.interpret import evaluate
+from derive.ir.passes import assemble
+from derive.ir.program import (
+    Output,
+    Program,
+)
+from derive.ir.symbols import (
+    SCALE,
+)
+from derive.kinematics.assembly import assembled
+from derive.kinematics.forward import derivation_at_axes, pose_at_axes
+from derive.kinematics.inverse import solve_pose
+from derive.kinematics.parameters import (
+    machine_parameters,
+    machine_scale,
+)
+from derive.kinematics.scanned import solve_both
+from tests.catalogue.closure import Array
+from tests.catalogue.machines import Machine
+
+Factors = Callable[[Array], Array]
+DISTANCES = (0.0, *(sign * 10.0**-k for k in range(2, 17) for sign in (1, -1)))
+"""How far a factor is from zero."""
+STARTS, PASSES = 24, 32
+AT = 1e-14
+"""A factor that small is zero."""
+STEP = 1e-6
+LONGEST = 0.4
+"""Radians, or reaches, of one step of Newton's method."""
+CONTROLLED = 2e-3
+"""A pose of a loop is refused where its type 2 margin is below 1e-3: such poses are no corners."""
+ENDS = 1e-6
+"""Quantities of a description that have an end are kept this far from it, per reach: they end, they are not singular there."""
+
+
+@dataclass(frozen=True)
+class Corner:
+    """Axis values at which some factors vanish, and the motions of the axes by which each of them leaves zero at unit rate."""
+
+    names: tuple[str, ...]
+    axes: Array
+    """(n, joints)"""
+    ways: Array
+    """(n, joints, factors), in units of the axes"""
+
+    def beside(self, distances: Array) -> Array:
+        """The axis values where every factor is at one of the distances (factors,) or (n, factors)."""
+        return self.axes + np.einsum("njf,nf->nj", self.ways, np.broadcast_to(distances, (len(self.axes), len(self.names))))
+
+
+@cache
+def factor_program(mechanism: Mechanism) -> Program:
+    """Every slope and measure of the inverse over its scale, at axis values."""
+    forward = assembled(mechanism, pose_at_axes(mechanism)).forward
+    inverse = solve_both(mechanism).closed if mechanism.search is not None else solve_pose(mechanism)
+    slopes = [Output(s.sigma.name.removeprefix("sigma_"), s.value / s.scale) for s in inverse.derivation.slopes]
+    measures = [Output(m.name, m.value / m.scale) for m in inverse.derivation.measures]
+    return assemble("factors", derivation_at_axes(mechanism, inverse, forward), [*slopes, *measures])
+
+
+@cache
+def _compiled(mechanism: Mechanism) -> tuple[tuple[str, tuple[str, ...], Callable[..., Array]], ...]:
+    """Every statement of the program: the name that it binds, the names that it reads, and its value in NumPy."""
+    primitives = {"Root": lambda x: np.sqrt(np.maximum(x, 0.0)), "Select": np.where, "Atan2": np.arctan2}
+    program = factor_program(mechanism)
+    values = [(let.name.name, let.value) for let in program.lets()] + [(f"factor {o.name}", o.value) for o in program.outputs]
+    found = []
+    for name, value in values:
+        read = sorted(value.free_symbols, key=lambda s: s.name)
+        found.append((name, tuple(s.name for s in read), sp.lambdify(read, value, modules=[primitives, "numpy"])))
+    return tuple(found)
+
+
+def factors(machine: Machine) -> Factors:
+    """The factors of a machine (n, factors) as a function of axis values (n, joints)."""
+    mechanism = machine.mechanism
+    constants = {k: np.asarray(v, dtype=float) for k, v in machine.robot.parameters.items()}
+    constants[SCALE.name] = np.asarray(evaluate(machine_scale(machine_parameters(mechanism)), constants), dtype=float)
+    constants[DEGREE.name] = np.asarray(np.pi / 180.0)
+    names = [f"factor {o.name}" for o in factor_program(mechanism).outputs]
+
+    def at(axes: Array) -> Array:
+        known = dict(constants)
+        for joint, column in zip(mechanism.joints, axes.T, strict=True):
+            known[joint.axis.name] = known[joint.reference.name] = column
+        with np.errstate(all="ignore"):
+            for name, read, value in _compiled(mechanism):
+                known[name] = value(*(known[r] for r in read))
+        return np.stack([np.broadcast_to(known[name], (len(axes),)) for name in names], axis=1)
+
+    return at
+
+
+def corners(machine: Machine, count: int, rng: Generator, *, of: int = 2) -> Iterator[Corner]:
+    """Every combination of factors that vanish together somewhere, at some places each."""
+    every, names = factors(machine), [o.name for o in factor_program(machine.mechanism).outputs]
+    for chosen in combinations(range(len(names)), of):
+        picked = partial(_picked, every, chosen)
+        found = _places(machine, picked, count, rng)
+        if len(found):
+            yield Corner(tuple(names[k] for k in chosen), found, _ways(machine, picked, found))
+
+
+def _picked(every: Factors, chosen: tuple[int, ...], axes: Array) -> Array:
+    return every(axes)[:, chosen]
+
+
+def _units(machine: Machine) -> Array:
+    """One radian, or one reach, in the units of the axes."""
+    return np.where(machine.closure.angles, 180.0 / np.pi, machine.reach)
+
+
+def _slopes(machine: Machine, functions: Factors, axes: Array) -> Array:
+    """(n, factors, joints), per radian or reach."""
+    steps = STEP * np.diag(_units(machine))
+    return np.stack([(functions(axes + s) - functions(axes - s)) / (2 * STEP) for s in steps], axis=2)
+
+
+def _places(machine: Machine, functions: Factors, count: int, rng: Generator) -> Array:
+    """Where Newton's method ends that starts anywhere, if all factors vanish there and the machine can be there."""
+    axes = _starts(machine, rng)
+    for _ in range(PASSES):
+        moving = np.flatnonzero((functions(axes) != 0.0).any(axis=1))
+        if not len(moving):
+            break
+        step = _least(_slopes(machine, functions, axes[moving]), functions(axes[moving]))
+        length = np.minimum(1.0, LONGEST / np.maximum(np.abs(step).max(axis=1), 1e-30))
+        axes[moving] -= _units(machine) * step * length[:, None]
+    good = (np.abs(functions(axes)) < AT).all(axis=1)
+    good[good] &= can_be_at(machine, axes[good])
+    return axes[good][:count]
+
+
+def _ways(machine: Machine, functions: Factors, axes: Array) -> Array:
+    """The pseudo-inverse of the slopes, seen a little beside the corner: lengths have no slope where they vanish."""
+    aside = axes + 1e-5 * _units(machine) * np.random.default_rng(1).uniform(-1.0, 1.0, axes.shape)
+    return np.linalg.pinv(np.nan_to_num(_slopes(machine, functions, aside)), rcond=1e-2) * _units(machine)[:, None]
+
+
+def _least(slopes: Array, values: Array) -> Array:
+    usable = np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(values).all(axis=1)
+    step = np.zeros((len(slopes), slopes.shape[2]))
+    step[usable] = (np.linalg.pinv(slopes[usable], rcond=1e-9) @ values[usable][:, :, None])[:, :, 0]
+    return step
+
+
+def _starts(machine: Machine, rng: Generator) -> Array:
+    """Random axis values, of a loop such as can be assembled."""
+    if machine.mechanism.rods:
+        return machine.draw(STARTS, rng, farthest=360.0)
+    ranges = [machine._range(j, 170.0) for j in machine.mechanism.joints]
+    low, high = np.array(ranges).T
+    return rng.uniform(low, high, (STARTS, len(low))) + machine.closure.offsets
+
+
+def can_be_at(machine: Machine, axes: Array) -> Array:
+    """Whether the machine can be at axis values: assembled and controlled, and nothing ends there that has an end."""
+    with np.errstate(all="ignore"):
+        status = machine.robot.forward_batch(axes)[3]
+    possible = status == 0
+    joints = machine.closure.joints(axes)
+    possible &= (machine.closure.positive(joints) >= 0.0).all(axis=1)
+    if machine.mechanism.rods:
+        name = machine.mechanism.assembly.margin
+        margins = [machine.robot.singularity(row).margins[name] if ok else 0.0 for row, ok in zip(axes, possible, strict=True)]
+        possible &= np.abs(margins) > CONTROLLED
+        positions = machine.robot.forward_batch(axes)[0]
+        possible &= machine.closure.room(joints, positions) > ENDS
+    return possible

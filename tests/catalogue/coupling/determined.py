@@ -1,0 +1,38 @@
+"""Whether a commanded frame determines the axes of a pair, found by a fit and by no formula of the product."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from derive.description.mechanism import Turning
+from tests.catalogue.coupling.parts import Part, frames
+
+_MET = {Turning.NONE: (), Turning.ABOUT_Z: (), Turning.DIRECTION: (2,), Turning.FULL: (0, 1, 2)}
+"""The columns of the commanded rotation that are met whatever the flange is turned to (a turn about z: see below)."""
+
+
+def is_determined(carrier: Part, wrist: Part) -> bool:
+    """Whether the way from the flange to the end point is known before the position axes are.
+
+    Known are what is the same for all axes (a fixed direction of the machine) and the columns of the rotation that are
+    met. If the flange keeps its orientation, everything is. A turn about z counts as not known on a flange that turns:
+    so it is documented of CODESYS's own (a C axis with an X or Y offset on a SCARA). A position kinematics that
+    follows a turn itself shares it with any axis behind it.
+    """
+    if carrier.mechanism.task.turning is not Turning.NONE and wrist.mechanism.joints:
+        return False
+    rng = np.random.default_rng(5)
+    count = 40
+    first, second = carrier.draw(count, rng), rng.uniform(-170.0, 170.0, (count, len(wrist.mechanism.joints)))
+    _, turns, ends, rotations = frames(carrier, first, wrist, second)
+    if np.ptp(turns, axis=0).max() < 1e-12:
+        return True
+    shifts = np.einsum("nij,nj->ni", turns, ends)
+    commanded = turns @ rotations
+    fixed = np.tile(np.eye(3), (count, 1, 1))
+    if np.ptp(turns[:, :, 2], axis=0).max() > 1e-12:
+        fixed = np.zeros((count, 3, 0))  # the flange turns freely: no direction of it is the same for all axes
+    features = np.concatenate([fixed, commanded[:, :, list(_MET[wrist.mechanism.task.turning])]], axis=2).reshape(3 * count, -1)
+    wanted = shifts.reshape(-1)
+    found = features @ np.linalg.lstsq(features, wanted, rcond=None)[0] if features.size else 0.0 * wanted
+    return bool(np.max(np.abs(wanted - found)) < 1e-9)

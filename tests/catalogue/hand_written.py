@@ -1,0 +1,184 @@
+"""Forward kinematics written by hand, as the literature prints it: independent of the descriptions.
+
+Each function takes parameters and motor values (axis value less offset, in radians and lengths), and gives
+x, y, z and the turn of the flange about z, or its whole rotation, entry by entry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from tests.catalogue.closure import Array
+
+Pose = tuple[Array, Array, Array, Array | tuple[tuple[Array, ...], ...]]
+Formula = Callable[[Mapping[str, float], Sequence[Array]], Pose]
+TURN = 2 * np.pi
+
+
+def _arms(lengths: Sequence[float], angles: Sequence[Array]) -> tuple[Array, Array]:
+    """Links one after the other at absolute angles."""
+    x = sum(length * np.cos(angle) for length, angle in zip(lengths, angles, strict=True))
+    y = sum(length * np.sin(angle) for length, angle in zip(lengths, angles, strict=True))
+    return x, y
+
+
+def _scara4(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    x, y = _arms((p["link_length_1"], p["link_length_2"]), (q[0], q[0] + q[1]))
+    climb = -p["pitch_zc"] / TURN + p.get("gear_coupling", 0.0) * 180.0 / np.pi
+    return x, y, q[2] + climb * q[3], q[0] + q[1] + q[3]
+
+
+def _scara3(word: str) -> Formula:
+    def formula(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+        x, y = _arms((p[f"{word}_length_1"], p[f"{word}_length_2"]), (q[0], q[0] + q[1]))
+        return x, y, q[2], q[0] + q[1]
+
+    return formula
+
+
+def _scara3_z(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    angles = (q[0], q[0] + q[1], q[0] + q[1] + q[2])
+    x, y = _arms([p[f"arm_length_{k}"] for k in (1, 2, 3)], angles)
+    return x, y, q[3], angles[2]
+
+
+def _zccc(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    angles = (q[1], q[1] + q[2], q[1] + q[2] + q[3])
+    x, y = _arms([p[f"link_length_{k}"] for k in (1, 2, 3)], angles)
+    return x, y, q[0], angles[2]
+
+
+def _sccc(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    first = q[0]
+    second = first + q[1] + p["coupling_12"] * q[0]
+    third = second + q[2] + p["coupling_13"] * q[0] + p["coupling_23"] * q[1]
+    x, y = _arms([p[f"link_length_{k}"] for k in (1, 2, 3)], (first, second, third))
+    return x, y, 0 * x, third
+
+
+def _pcc(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    x, y = _arms((p["link_length_1"], p["link_length_2"]), q)
+    return x, y, 0 * x, 0 * x
+
+
+def _crane(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    r, theta, phi = q
+    return r * np.sin(phi) * np.cos(theta), r * np.sin(phi) * np.sin(theta), r * np.cos(phi), 0 * r
+
+
+def _polar(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    return q[1] * np.cos(q[0]), q[1] * np.sin(q[0]), q[2] if len(q) > 2 else 0 * q[0], q[0]
+
+
+def _carriage(x: Sequence[float], y: Sequence[float]) -> Formula:
+    """Two drives move a carriage; a third axis, where there is one, lifts."""
+
+    def formula(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
+        a, b = q[0], q[1]
+        return x[0] * a + x[1] * b, y[0] * a + y[1] * b, q[2] if len(q) > 2 else 0 * a, 0 * a
+
+    return formula
+
+
+def _cutter(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    return q[0], q[1], q[2] if len(q) > 3 else 0 * q[0], p["direction_r"] * q[-1]
+
+
+def _three_parallel(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """Entry by entry, as papers on these arms print it."""
+    (c1, c5, c6), (s1, s5, s6) = ([f(q[i]) for i in (0, 4, 5)] for f in (np.cos, np.sin))
+    sums = (q[1], q[1] + q[2], q[1] + q[2] + q[3])
+    (c2, c23, c), (s2, s23, s) = ([f(v) for v in sums] for f in (np.cos, np.sin))
+    across = -(p["d4"] + p["d6"] * c5)
+    along = p["a2"] * c2 + p["a3"] * c23 + p["d5"] * s - p["d6"] * s5 * c
+    z = p["d1"] + p["a2"] * s2 + p["a3"] * s23 - p["d5"] * c - p["d6"] * s5 * s
+    rotation = (
+        (c6 * (s1 * s5 + c1 * c5 * c) - c1 * s6 * s, -s6 * (s1 * s5 + c1 * c5 * c) - c1 * c6 * s, c5 * s1 - c1 * s5 * c),
+        (c6 * (s1 * c5 * c - c1 * s5) - s1 * s6 * s, s6 * (c1 * s5 - s1 * c5 * c) - s1 * c6 * s, -c1 * c5 - s1 * s5 * c),
+        (c5 * c6 * s + s6 * c, c6 * c - c5 * s6 * s, -s5 * s),
+    )
+    return along * c1 - across * s1, along * s1 + across * c1, z, rotation
+
+
+def _arm(p: Mapping[str, float], q: Sequence[Array]) -> tuple[Array, Array]:
+    """An articulated arm in its plane: the wrist centre, and the frame of the forearm, rows of vectors."""
+    o, one = 0 * q[0], 0 * q[0] + 1
+    radial, sideways = np.array([np.cos(q[0]), np.sin(q[0]), o]), np.array([np.sin(q[0]), -np.cos(q[0]), o])
+    up = np.array([o, o, one])
+    lean, tilt = q[1], q[1] + q[2]
+    out, high = -np.sin(tilt) * radial + np.cos(tilt) * up, np.cos(tilt) * radial + np.sin(tilt) * up
+    shoulder = p["a1"] * radial + p["d1"] * up
+    wrist = shoulder + p["a2"] * (np.cos(lean) * up - np.sin(lean) * radial) + p["d3"] * sideways + p["a3"] * out + p["d4"] * high
+    return wrist, np.array([out, sideways, high])
+
+
+def _pos_rrr(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    wrist, frame = _arm(p, q)
+    return *wrist, tuple(tuple(frame[j, i] for j in range(3)) for i in range(3))
+
+
+def _articulated(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    wrist, (x, y, z) = _arm(p, q)
+    c4, s4, c5, s5, c6, s6 = (f(q[i]) for i in (3, 4, 5) for f in (np.cos, np.sin))
+    towards = -c4 * s5 * x - s4 * s5 * y + c5 * z
+    first = (c4 * c5 * c6 - s4 * s6) * x + (s4 * c5 * c6 + c4 * s6) * y + s5 * c6 * z
+    second = -(c4 * c5 * s6 + s4 * c6) * x + (c4 * c6 - s4 * c5 * s6) * y - s5 * s6 * z
+    return *(wrist + p["d6"] * towards), tuple(zip(first, second, towards, strict=True))
+
+
+def _gantry_head(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """Turns about y, the turned x and the flange's z, multiplied out."""
+    b, a, c = q[3:]
+    (ca, cb, cc), (sa, sb, sc) = ([f(v) for v in (a, b, c)] for f in (np.cos, np.sin))
+    rotation = (
+        (cb * cc + sb * sa * sc, sb * sa * cc - cb * sc, sb * ca),
+        (ca * sc, ca * cc, -sa),
+        (cb * sa * sc - sb * cc, sb * sc + cb * sa * cc, cb * ca),
+    )
+    flange = [p[f"flange_{w}"] for w in "xyz"]
+    return *(q[i] + sum(r * o for r, o in zip(rotation[i], flange, strict=True)) for i in range(3)), rotation
+
+
+def _five_axes(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The azimuth turns the inclination: the tool along +Z, or along -Z, goes to +X with a positive inclination."""
+    side, a, b = p["tool_side"], q[3], q[4]
+    ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), side * np.sin(b)
+    rotation = ((ca * cb, -sa, ca * sb), (sa * cb, ca, sa * sb), (-sb, 0 * a, cb))
+    reach = side * p["tool_length"]
+    return q[0] + reach * ca * sb, q[1] + reach * sa * sb, q[2] + reach * cb, rotation
+
+
+CARTESIAN = _carriage((1, 0), (0, 1))
+H_BOT = _carriage((0.5, -0.5), (0.5, 0.5))
+H_GANTRY = _carriage((0.5, -0.5), (-0.5, -0.5))
+T_GANTRY = _carriage((0.5, 0.5), (-0.5, 0.5))
+FORMULAS: dict[str, Formula] = {
+    "Kin_5Axes": _five_axes,
+    "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
+    "Kin_Ac6_ThreeParallel": _three_parallel,
+    "Kin_ArticulatedRobot_6DOF": _articulated,
+    "Kin_Crane": _crane,
+    "Kin_Gantry2": CARTESIAN,
+    "Kin_Gantry3": CARTESIAN,
+    "Kin_GantryCutter2": _cutter,
+    "Kin_GantryCutter3": _cutter,
+    "Kin_HGantry2": H_GANTRY,
+    "Kin_HGantry3": H_GANTRY,
+    "Kin_P2Y": H_BOT,
+    "Kin_PCC": _pcc,
+    "Kin_Polar": _polar,
+    "Kin_Polar_Z": _polar,
+    "Kin_Pos_RRR": _pos_rrr,
+    "Kin_SCCC": _sccc,
+    "Kin_Scara2_Z": _scara3("arm"),
+    "Kin_Scara3_CCZ": _scara3("link"),
+    "Kin_Scara3_Z": _scara3_z,
+    "Kin_Scara3_ZCCC": _zccc,
+    "Kin_Scara4_CCZC_ZCcoupled": _scara4,
+    "Kin_Scara4_ZCCC": _zccc,
+    "Kin_Scara4_ZCcoupled_Type1": _scara4,
+    "Kin_TGantry2": T_GANTRY,
+    "Kin_TGantry3": T_GANTRY,
+}

@@ -1,0 +1,104 @@
+"""There and back: the inverse in closed form, forward kinematics from the home pose, from a start, and without memory."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from softkin import KinematicsError, Status
+
+from tests.catalogue.hexapod.machines import Machine, machines
+
+
+def test_all_over_a_realistic_workspace(machine: Machine) -> None:
+    """Every pose within 25 degrees of home about each axis is found from home: its lengths have only one pose there."""
+    positions, turns = machine.poses(3000)
+    axes, status = machine.robot.inverse_batch(positions, turns)
+    assert not status.any()
+    assert_allclose(axes, machine.axes(positions, turns), rtol=1e-13)
+    back, turned, configurations, status = machine.robot.forward_batch(axes)
+    assert not status.any() and configurations.shape == (3000, 0)
+    assert_allclose(back, positions, atol=1e-11 * machine.shift)
+    assert_allclose(turned, turns, atol=1e-11)
+
+
+def test_what_the_inverse_accepts_is_found_from_home(machine: Machine) -> None:
+    """Up to 40 degrees about each axis: what the inverse refuses is in the other assembly mode, or nearly singular."""
+    positions, turns = machine.poses(1500, turn=40.0)
+    axes, status = machine.robot.inverse_batch(positions, turns)
+    accepted = status == Status.OK
+    assert accepted.sum() > 1400 and set(status[~accepted]) <= {Status.UNREACHABLE}
+    side = machine.side(machine.home[:3], machine.home_turn)
+    margins = side * np.array([machine.normalised(p, r) for p, r in zip(positions, turns, strict=True)])
+    assert (accepted == (margins >= 1e-3)).all()
+    back, turned, _, status = machine.robot.forward_batch(axes[accepted])
+    assert not status.any()
+    assert_allclose(back, positions[accepted], atol=1e-9 * machine.shift)
+    assert_allclose(turned, turns[accepted], atol=1e-9)
+
+
+def test_far_poses_are_found_or_refused_never_mistaken(machine: Machine) -> None:
+    """Beyond the realistic: whatever answers has these lengths, in the machine's assembly mode."""
+    positions, turns = machine.poses(1500, turn=100.0)
+    axes = machine.axes(positions, turns)
+    back, turned, _, status = machine.robot.forward_batch(axes)
+    assert set(status) == {Status.OK, Status.IMPOSSIBLE}
+    found = status == Status.OK
+    assert found.mean() > 0.5
+    assert_allclose(machine.axes(back[found], turned[found]), axes[found], rtol=1e-9)
+    assert_allclose(turned[found] @ np.moveaxis(turned[found], 1, 2), np.broadcast_to(np.eye(3), turned[found].shape), atol=1e-12)
+    side = machine.side(machine.home[:3], machine.home_turn)
+    assert {machine.side(p, r) for p, r in zip(back[found], turned[found], strict=True)} == {side}
+
+
+def test_a_start_is_where_the_search_starts(machine: Machine) -> None:
+    positions, turns = machine.path(40)
+    robot, frame = machine.robot, None
+    axes, _ = robot.inverse_batch(positions, turns)
+    together = robot.forward_batch(axes, (positions, turns))
+    one = robot.forward_batch(axes, (positions[0], turns[0]))
+    assert not one[3].any() and not together[3].any()
+    for i, values in enumerate(axes):
+        frame, _ = robot.forward(values, start=frame or (positions[0], turns[0]))
+        for found in (frame.position, together[0][i], one[0][i], robot.forward(values)[0].position):
+            assert_allclose(found, positions[i], atol=1e-11 * machine.shift)
+
+
+def test_the_answer_is_in_the_mode_of_the_machine_wherever_the_search_starts() -> None:
+    """A flat platform below its base has the lengths of the one above: from there the search ends there, and is refused."""
+    machine = machines()["nominal"]
+    mirror = np.diag((1.0, 1.0, -1.0))
+    turn = machine.poses(1)[1][0]
+    pose = (np.array((20.0, -30.0, 590.0)), turn)
+    below = (mirror @ pose[0], mirror @ turn @ mirror)
+    axes = machine.axes(*pose)
+    assert_allclose(machine.axes(*below), axes, rtol=1e-14)
+    assert_allclose(machine.robot.forward(axes)[0].position, pose[0], atol=1e-9)
+    with pytest.raises(KinematicsError) as refused:
+        machine.robot.forward(axes, start=below)
+    assert refused.value.status is Status.IMPOSSIBLE
+    with pytest.raises(KinematicsError) as refused:
+        machine.robot.inverse(below)
+    assert refused.value.status is Status.UNREACHABLE
+
+
+def test_the_home_pose_chooses_the_mode() -> None:
+    machine = machines()["nominal"]
+    hanging = Machine(machine.base, machine.platform, (0, 0, -600, 0, 0, 0), 180.0)
+    positions, turns = hanging.poses(200)
+    back, _, _, status = hanging.robot.forward_batch(hanging.axes(positions, turns))
+    assert not status.any() and (back[:, 2] < 0.0).all()
+    assert_allclose(back, positions, atol=1e-9)
+
+
+def test_calls_leave_no_trace(machine: Machine) -> None:
+    """Whatever was asked before, an answer is the same to the last digit; what cannot be solved spoils nothing."""
+    robot = machine.robot
+    axes = [tuple(a) for a in machine.axes(*machine.poses(12))]
+    first = [robot.forward(a) for a in axes]
+    assert [robot.forward(a) for a in reversed(axes)][::-1] == first
+    for a, answer in zip(axes, first, strict=True):
+        with pytest.raises(KinematicsError):
+            robot.forward((1e6,) * 6)
+        robot.forward(axes[0], start=first[-1][0])
+        assert robot.forward(a) == answer

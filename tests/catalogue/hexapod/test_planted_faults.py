@@ -1,0 +1,127 @@
+"""The tests of this folder can fail: a unit, or a program, with one thing wrong is noticed by what they compare."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from softkin import Hexapod
+
+from derive.ir.program import Call, Program
+from derive.ir.program import Status as Outcome
+from derive.mechanisms.kin_hexapod import MECHANISM
+from tests.catalogue.hexapod.machines import Machine, machines
+from tests.catalogue.hexapod.programs import bounded, found_from, search_changed, without_mode
+from tests.harness.faults import StFault
+from tests.harness.library import StError
+from tests.text.hexapod.blocks import made
+from tests.text.hexapod.test_structured_text import compare_some, in_the_other_mode
+from tests.text.units import compiled_text, file_of, text_of
+
+_SEARCH, _INVERSE, _JACOBIAN = "PRIVATE FindPlatform", "PRIVATE SolveBranch", "PUBLIC Jacobian"
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What stands in a method, and what is put there instead."""
+
+    method: str
+    right: str
+    wrong: str
+
+
+WRONG = {
+    "a moment the other way round": Fault(_SEARCH, "along3Z*arm3Y - along3Y*arm3Z", "along3Y*arm3Z - along3Z*arm3Y"),
+    "a joint of another leg": Fault(_SEARCH, "arm4X + x - base4X", "arm4X + x - base5X"),
+    "an entry of the rotation": Fault(_SEARCH, "r23 := ", "r23 := 1.0E-9 + "),
+    "a rotation on the other side": Fault(_SEARCH, "startR12*turned11", "startR21*turned11"),
+    "an offset": Fault(_SEARCH, "l5 := a.a4 - offsetL5", "l5 := a.a4"),
+    "too few passes": Fault(_SEARCH, "FOR iteration := 1 TO 20 DO", "FOR iteration := 1 TO 3 DO"),
+    "a tolerance": Fault(_SEARCH, "(fit > 0.5) AND (fitted > 0.5)", "(fit > 0.5) OR (size < 0.05)"),
+    "a pass that changes nothing": Fault(_SEARCH, "x := x + xRate/stretch", "x := x"),
+    "an output that is never written": Fault(_SEARCH, "r31 := ", "startArm1X := "),
+    "the other assembly mode": Fault(_SEARCH, "assemblySign*determinant > 0.0", "assemblySign*determinant < 0.0"),
+    "two outputs exchanged": Fault("PUBLIC AxesToCartesian", "x => x, y => y", "x => y, y => x"),
+    "another start": Fault("PUBLIC AxesToCartesian", "startX := homeX", "startX := homeX + 1.0E6"),
+    "a refusal that is not handed on": Fault("PUBLIC AxesToCartesian", ":= outcome;", ":= SM3_Error.SMC_ERROR.SMC_NO_ERROR;"),
+    "a column of the Jacobian": Fault(_JACOBIAN, "coefficients[2, 4] := moment2X", "coefficients[2, 4] := moment3X"),
+    "a Jacobian per platform radius": Fault(_JACOBIAN, "/platformRadius", ""),
+    "a margin": Fault("PUBLIC IsSingularity", "ABS(determinant) < 0.001", "ABS(determinant) < 10.0"),
+    "a length": Fault(_INVERSE, "span2Y*span2Y", "span2X*span2Y"),
+    "a cone": Fault(_INVERSE, "cosBaseLean1 >= leastCosBase", "cosBaseLean1 >= 0.999999"),
+}  # fmt: skip
+
+
+def text_with(fault: Fault) -> str:
+    """The unit with a fault in it."""
+    text = text_of(MECHANISM)
+    start = text.index(f"METHOD {fault.method} ")
+    end = text.index("END_METHOD", start)
+    assert fault.right in text[start:end], fault
+    return text[:start] + text[start:end].replace(fault.right, fault.wrong, 1) + text[end:]
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_text_is_noticed(name: str) -> None:
+    """By the comparison with Python at ordinary poses of a machine without symmetry, and where nothing can be found."""
+    machine, library = machines()["asymmetric"], compiled_text(file_of(MECHANISM), text_with(WRONG[name]))
+    block = made(machine, library)
+    with pytest.raises((AssertionError, StFault)):
+        compare_some(machine, block)
+        for axes in ((1e6,) * 6, in_the_other_mode()):
+            assert block.forward(axes)[1] is None
+
+
+def test_a_memory_is_refused() -> None:
+    """A search that keeps where it ended for the next call cannot even be compiled."""
+    with pytest.raises(StError, match="only Initialize and AxisSettings may write"):
+        compiled_text(file_of(MECHANISM), text_with(Fault(_SEARCH, "x := x + xRate/stretch;", "homeX := x;")))
+
+
+def in_reach(program: Program, machine: Machine) -> bool:
+    """Whether a search from the neighbouring pose ends in the pose that was commanded."""
+    positions, turns = (values[::25] for values in machine.path())
+    found, status = found_from(program, machine, machine.axes(positions, turns), positions, turns)
+    near, ok = found_from(program, machine, machine.axes(positions, turns)[1:], positions[:-1], turns[:-1])
+    same = np.abs(found - positions).max() < 1e-8 and np.abs(near - positions[1:]).max() < 1e-8
+    return bool(same and (status == Outcome.OK).all() and (ok == Outcome.OK).all())
+
+
+def _with_argument(name: str, value: float) -> Program:
+    """The search with one argument fixed."""
+    program = search_changed(lambda s: s)
+    body = tuple(
+        replace(s, given=tuple((n, v * 0 + value if n.name == name else v) for n, v in s.given)) if isinstance(s, Call) else s
+        for s in program.body
+    )
+    return replace(program, body=body)
+
+
+@pytest.mark.parametrize(
+    "program", [lambda: bounded(2), lambda: _with_argument("axis_l3", 700.0), lambda: _with_argument("start_r21", 0.7)]
+)
+def test_a_wrong_program_is_noticed(program: Callable[[], Program]) -> None:
+    assert in_reach(search_changed(lambda s: s), machines()["lopsided"])
+    assert not in_reach(program(), machines()["lopsided"])
+
+
+def test_the_test_of_the_mode_decides() -> None:
+    """Without it the far poses of the asymmetric machine are answered in both modes."""
+    machine = machines()["asymmetric"]
+    axes, home = np.array([in_the_other_mode()]), (machine.home[None, :3], machine.home_turn[None])
+    assert found_from(without_mode(), machine, axes, *home)[1] == Outcome.OK
+    assert found_from(search_changed(lambda s: s), machine, axes, *home)[1] == Outcome.IMPOSSIBLE
+
+
+def test_a_platform_given_wrongly_is_another_machine() -> None:
+    """The lengths are those of the joints that were given: a joint elsewhere changes them."""
+    machine = machines()["lopsided"]
+    for name in machine.given:
+        if name.startswith(("base", "platform")):
+            other = Hexapod(**{**machine.given, name: machine.given[name] + 1.0})
+            pose = (machine.home[:3], machine.home_turn)
+            leg = int(name.split("_")[1]) - 1
+            changed = ~np.isclose(other.inverse(pose), machine.axes(*pose), rtol=1e-12)
+            assert changed.tolist() == [i == leg for i in range(6)]

@@ -1,0 +1,126 @@
+"""The search itself: how many passes it takes, that it ends, and what it does where roll, pitch and yaw are singular."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from softkin import KinematicsError, Status
+
+from derive.ir.program import (
+    Iterate,
+    Statement,
+)
+from derive.ir.program import Status as Outcome
+from derive.ir.symbols import (
+    real,
+)
+from derive.plate.newton import LIMIT
+from tests.catalogue.hexapod.machines import Machine, machines, rotation
+from tests.catalogue.hexapod.programs import bounded, found_from, search_changed
+from tests.text.controller import IMPOSSIBLE
+from tests.text.hexapod.blocks import controller
+
+RATES = {real(f"{angle}_rate"): real(f"spin_{c}") for angle, c in zip(("roll", "pitch", "yaw"), "xyz", strict=True)}
+
+
+def test_five_passes_from_the_neighbouring_pose(machine: Machine) -> None:
+    """Every point of a path of 1000, from the one before it; the last pass only confirms."""
+    positions, turns = machine.path()
+    axes = machine.axes(positions, turns)
+    found, status = found_from(bounded(5), machine, axes[1:], positions[:-1], turns[:-1])
+    assert (status == Outcome.OK).all()
+    assert_allclose(found, positions[1:], atol=1e-11 * machine.shift)
+
+
+def test_the_number_of_passes_is_noticed() -> None:
+    """Three passes are too few, and so are five where the rate of a turn is taken for the rates of roll, pitch and yaw."""
+
+    def without_matrix(s: Statement) -> Statement:
+        return replace(s, limit=5, following=tuple(v.xreplace(RATES) for v in s.following)) if isinstance(s, Iterate) else s
+
+    machine = machines()["asymmetric"]
+    positions, turns = (values[::10] for values in machine.path(500))
+    axes = machine.axes(positions, turns)
+    for program in (bounded(3), search_changed(without_matrix)):
+        _, status = found_from(program, machine, axes[1:], positions[:-1], turns[:-1])
+        assert (status == Outcome.IMPOSSIBLE).any()
+    _, status = found_from(bounded(LIMIT), machine, axes[1:], positions[:-1], turns[:-1])
+    assert (status == Outcome.OK).all()
+
+
+@pytest.mark.parametrize("name", ["nominal", "lopsided"])
+@pytest.mark.parametrize(
+    "axes", [(1e6,) * 6, (1e-3,) * 6, (0.0,) * 6, (-650.0,) * 6, (650.0, 650.0, 650.0, 650.0, 650.0, 5000.0), (9e8,) * 6]
+)
+def test_lengths_that_no_pose_has(name: str, axes: tuple[float, ...]) -> None:
+    """They end in one status, in every language, from the home pose and from any start."""
+    robot = machines()[name].robot
+    axes = tuple(np.array(axes) + machines()[name].offsets)
+    for start in (None, ((0.0, 0.0, 600.0), np.eye(3)), ((1e9, -1e9, 1e9), np.eye(3))):
+        with pytest.raises(KinematicsError) as refused:
+            robot.forward(axes, start=start)
+        assert refused.value.status is Status.IMPOSSIBLE
+    position, turn, _, status = robot.forward_batch([axes])
+    assert status == [Status.IMPOSSIBLE] and np.isnan(position).all() and np.isnan(turn).all()
+    with pytest.raises(KinematicsError) as refused:
+        robot.jacobian(axes)
+    assert refused.value.status is Status.IMPOSSIBLE
+    assert robot.singularity(axes).is_singular
+    block = controller(name)
+    assert block.forward(axes) == block.jacobian(axes) == (IMPOSSIBLE, None)
+    assert block.is_singular(axes)
+
+
+def test_wild_lengths_end_alike_in_every_language(machine: Machine) -> None:
+    """Some have a pose, most do not: no call faults, and all give the same answer to the last digit."""
+    generator = np.random.default_rng(3)
+    home = machine.axes(machine.home[:3], machine.home_turn)
+    axes = home * generator.choice([0.6, 0.9, 1.0, 1.1, 1.5, 100.0], (60, 6), p=[0.05, 0.3, 0.2, 0.3, 0.1, 0.05])
+    position, turn, _, status = machine.robot.forward_batch(axes)
+    assert set(status) == {Status.OK, Status.IMPOSSIBLE}
+    block = controller(name_of(machine))
+    for i, values in enumerate(axes):
+        name, pose = block.forward(values)
+        assert name == Status(status[i]).softmotion
+        if status[i] == Status.OK:
+            frame, _ = machine.robot.forward(values)
+            assert pose[:2] == (frame.position, frame.rotation)
+            assert frame.position == tuple(position[i]) and np.array_equal(frame.rotation, turn[i])
+            assert_allclose(machine.axes(position[i], turn[i]), values, rtol=1e-10)
+
+
+@pytest.mark.parametrize("pitch", [90.0, -90.0, 89.999])
+def test_where_roll_pitch_and_yaw_are_singular(machine: Machine, pitch: float) -> None:
+    """A quarter turn of pitch away from the start: where the machine can hold that, it is found or refused, never mistaken."""
+    side = machine.side(machine.home[:3], machine.home_turn)
+    turns = np.array([rotation(0.0, pitch, 0.0) @ rotation(0.0, 0.0, yaw) @ machine.home_turn for yaw in (0.0, 10.0, 20.0, 30.0)])
+    positions = machine.home[:3] + np.outer(np.arange(4) / 2.0, machine.home_turn[:, 2]) * machine.shift
+    for turn in turns:
+        back, turned, _, status = machine.robot.forward_batch(machine.axes(positions, np.array([turn] * 4)))
+        assert set(status) <= {Status.OK, Status.IMPOSSIBLE}
+        found = status == Status.OK
+        assert_allclose(machine.axes(back[found], turned[found]), machine.axes(positions, np.array([turn] * 4))[found], rtol=1e-9)
+        assert {machine.side(p, r) for p, r in zip(back[found], turned[found], strict=True)} <= {side}
+
+
+@pytest.mark.parametrize("name", ["nominal", "lopsided", "sideways"])
+def test_a_quarter_turn_of_pitch_is_found(name: str) -> None:
+    """Machines that can hold it, from home, from the pose itself, and past it: the angles count from the start."""
+    machine = machines()[name]
+    turn = rotation(0.0, 90.0, 0.0) @ rotation(0.0, 0.0, 20.0) @ machine.home_turn
+    position = machine.home[:3] + machine.home_turn[:, 2] * machine.shift
+    axes = machine.robot.inverse((position, turn))
+    starts = (None, (position, turn), (position + 0.02 * machine.shift, turn @ rotation(2.0, -3.0, 4.0)))
+    for start in starts:
+        assert_allclose(machine.robot.forward(axes, start=start)[0].position, position, atol=1e-10 * machine.shift)
+    past = rotation(0.0, 96.0, 0.0) @ rotation(0.0, 0.0, 20.0) @ machine.home_turn
+    lengths = machine.axes(position, past)
+    assert_allclose(machine.robot.forward(lengths, start=(position, turn))[0].rotation, past, atol=1e-9)
+
+
+def name_of(machine: Machine) -> str:
+    """The name of a machine."""
+    return next(name for name, one in machines().items() if one is machine)

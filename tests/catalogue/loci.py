@@ -1,0 +1,150 @@
+"""Where a mechanism is singular, read off its description: branch indicators and positive quantities that vanish."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations, product
+
+import numpy as np
+import sympy as sp
+
+from tests.catalogue.closure import Array
+from tests.catalogue.machines import Machine
+
+OFTEN = 0.9
+"""A quantity c + h cos(u - centre) is taken to vanish somewhere where |c| is less than this share of h."""
+
+
+SHIFTS = (0.0, 1e-12, -1e-9, 1e-6, -1e-4, 1e-3)
+"""How far (radians) singular joints are from their places, where several singularities coincide."""
+POSES = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Locus:
+    """One of the two places (`second` or not) at which a joint makes a quantity vanish, whatever the others are."""
+
+    machine: Machine
+    quantity: sp.Expr
+    joint: int
+    second: bool
+    branch: int | None
+    """The branch whose two solutions meet here; None where a positive quantity ends."""
+
+    @property
+    def is_length(self) -> bool:
+        """Whether the joint is a length that ends, and no angle."""
+        return not self.machine.mechanism.joints[self.joint].is_angle
+
+    @property
+    def inward(self) -> float:
+        """The direction of a shift from the locus that the machine can make: both, for a branch."""
+        return -1.0 if self.branch is None and self.second else 1.0
+
+    def moved(self, axes: Array, shift: float | Array) -> Array:
+        """The axis values at a shift (radians, or per reach) from the locus, one for all or a row.
+
+        A row without such a place is replaced by one that has it.
+        """
+        exists = np.flatnonzero(self.exists(axes))
+        rows = np.arange(len(axes))
+        rows[~np.isin(rows, exists)] = np.resize(exists, len(axes) - len(exists))
+        joints = self.machine.closure.joints(axes[rows])
+        joints[:, self.joint] = self._root(joints) + shift * (self.machine.reach if self.is_length else 1.0)
+        return self.machine.closure.axes(joints)
+
+    def within(self, axes: Array, share: float | Array, turns: int = 0) -> Array:
+        """The axis values with the joint inside the arc on which the quantity is positive: -1 and 1 are its ends."""
+        joints = self.machine.closure.joints(axes)
+        centre, half = self._arc(joints)
+        joints[:, self.joint] = np.unwrap(centre) + share * half + 2 * np.pi * turns
+        return self.machine.closure.axes(joints)
+
+    def exists(self, axes: Array) -> Array:
+        """Which rows have the place."""
+        if self.is_length:
+            return np.ones(len(axes), dtype=bool)
+        level, along, across = self._harmonic(self.machine.closure.joints(axes))
+        return np.abs(level) < OFTEN * np.hypot(along, across)
+
+    @cached_property
+    def joints(self) -> int:
+        """How many joints the quantity depends on."""
+        return len(_joints(self.machine, self.quantity))
+
+    def _root(self, joints: Array) -> Array:
+        if self.is_length:
+            return np.zeros(len(joints))
+        centre, half = self._arc(joints)
+        there = joints.copy()
+        there[:, self.joint] = centre + (half if self.second else -half)
+        _, along, across = self._harmonic(joints)
+        angle = there[:, self.joint]
+        return angle - self._value(there) / (across * np.cos(angle) - along * np.sin(angle))
+
+    def _arc(self, joints: Array) -> tuple[Array, Array]:
+        """The middle of the arc on which the quantity is positive, and half its width; within reason, where it never vanishes."""
+        level, along, across = self._harmonic(joints)
+        return np.arctan2(across, along), np.arccos(np.clip(-level / np.hypot(along, across), -OFTEN, OFTEN))
+
+    def _harmonic(self, joints: Array) -> tuple[Array, Array, Array]:
+        """The quantity as level + along cos u + across sin u of the joint."""
+        values = []
+        for angle in (0.0, np.pi, np.pi / 2, 0.7):
+            there = joints.copy()
+            there[:, self.joint] = angle
+            values.append(self._value(there))
+        level, along = (values[0] + values[1]) / 2, (values[0] - values[1]) / 2
+        across = values[2] - level
+        expected = level + along * np.cos(0.7) + across * np.sin(0.7)
+        assert np.allclose(expected, values[3]), f"teach the tests where {self.quantity} vanishes"
+        return level, along, across
+
+    def _value(self, joints: Array) -> Array:
+        return self.machine.closure.at_joints([self.quantity], joints)[:, 0]
+
+
+def loci(machine: Machine) -> list[Locus]:
+    """Every place where some quantity of the description vanishes; no two branches' by the same joint, where that can be."""
+    quantities: list[tuple[int | None, sp.Expr]] = [(i, b.indicator) for i, b in enumerate(machine.mechanism.branches)]
+    quantities += [(None, sp.sympify(p)) for p in machine.mechanism.positive]
+    chosen: dict[int, Locus] = {}
+    for number in sorted(range(len(quantities)), key=lambda n: len(_joints(machine, quantities[n][1]))):
+        taken = {locus.joint for locus in chosen.values()}
+        chosen[number] = _first(machine, *quantities[number], taken)
+    pairs = [(chosen[n], replace(chosen[n], second=True)) for n in sorted(chosen)]
+    return [locus for pair in pairs for locus in (pair[:1] if pair[0].is_length else pair)]
+
+
+def coinciding(one: Machine) -> Iterator[Array]:
+    """Poses at every combination of places where branches meet, one place a branch, each by some shift."""
+    axes = one.draw(POSES, np.random.default_rng(3), farthest=150.0)
+    groups: dict[int, list[Locus]] = {}
+    for locus in loci(one):
+        groups.setdefault(locus.branch or 0, []).append(locus)
+    for count in range(1, len(groups) + 1):
+        for chosen in combinations(groups.values(), count):
+            for places in product(*chosen):
+                for shifts in product(SHIFTS, repeat=count) if count < 3 else [(s,) * count for s in SHIFTS]:
+                    there = axes
+                    for locus, shift in sorted(zip(places, shifts, strict=True), key=lambda pair: pair[0].joints):
+                        if locus.exists(there).any():
+                            there = locus.moved(there, shift)
+                    yield there
+
+
+def _first(machine: Machine, branch: int | None, quantity: sp.Expr, taken: set[int]) -> Locus:
+    """The first place of a quantity, by the joint that brings it there from the most poses, the last of equals."""
+    joints = _joints(machine, quantity)
+    candidates = [Locus(machine, quantity, i, False, branch) for i in joints if i not in taken or taken >= set(joints)]
+    shares = {c.joint: c.exists(machine.sample(200)).mean() for c in candidates}
+    best = max(reversed(candidates), key=lambda c: shares[c.joint])
+    assert shares[best.joint] > 0.2, f"{quantity} hardly vanishes"
+    return best
+
+
+def _joints(machine: Machine, quantity: sp.Expr) -> list[int]:
+    symbols = [j.symbol for j in machine.mechanism.joints]
+    return [i for i, s in enumerate(symbols) if s in sp.sympify(quantity).free_symbols]

@@ -1,0 +1,205 @@
+"""Closed loops: their closure with positions as unknowns, machines of each, and poses of those."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+import softkin
+import sympy as sp
+from numpy.random import Generator
+from numpy.typing import NDArray
+
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism, Role, Turning
+from tests.catalogue.closure import POSITION, Array, Closure, derivative
+from tests.catalogue.machines import TURNS, Machine
+
+LOOPS = tuple(m for _, m in catalogue() if m.rods and m.task.turning is not Turning.FULL)
+"""Loops whose plate keeps its orientation. One whose plate turns has tests of its own: `hexapod`."""
+CANDIDATES = 6000
+REGULAR = 0.08
+"""Indicators at a regular pose are at least this part of their largest value."""
+FAR = 4.0
+"""Where Newton's method starts, in reaches: beyond everything, once on either side."""
+DIRECTIONS = np.array([[0.36, 0.48, 0.8], [-0.48, 0.8, 0.36], [0.8, 0.36, -0.48], [0.6, -0.8, 0.0]])
+PASSES = 20
+
+
+class LoopClosure(Closure):
+    """The closure of a closed loop. Which solution is this machine's is said by the assembly's indicator alone."""
+
+    def __init__(self, mechanism: Mechanism, parameters: Mapping[str, float], reach: float) -> None:
+        super().__init__(mechanism, parameters)
+        assert mechanism.assembly is not None
+        self.reach = reach
+        self._mode = mechanism.assembly.signs[bool(parameters[mechanism.assembly.parameter])]
+        self._side = mechanism.assembly.indicator * sp.sign(mechanism.assembly.handedness)
+        self._room = [b.largest - sp.Abs(b.value) for b in mechanism.bounds]
+        self._indicators = [b.signs[0] * b.indicator for b in mechanism.branches]
+        self._equations = [*mechanism.closure, *(r.equation / r.length for r in mechanism.rods)]
+
+    def poses(self, axes: Array) -> tuple[Array, Array]:
+        """Position and rotation at axis values; not a number where nothing, or nothing on this machine's side, closes."""
+        joints = self.joints(axes)
+        found = np.full((len(axes), 3), np.nan)
+        wanted = (self.positive(joints) > 0).all(axis=1)
+        for direction in (*DIRECTIONS, *-DIRECTIONS):
+            rows = np.flatnonzero(np.isnan(found[:, 0]) & wanted)
+            if not rows.size:
+                break
+            positions, closed = self.assembly_from(joints[rows], direction)
+            mine = closed & (self.side(joints[rows], positions) > 0)
+            found[rows[mine]] = positions[mine]
+        return found, np.tile(np.eye(3), (len(axes), 1, 1))
+
+    def assembly_from(self, joints: Array, direction: Array) -> tuple[Array, Array]:
+        """Where Newton's method ends that starts far away in a direction, and whether the loop closes there."""
+        positions = np.zeros((len(joints), 3))
+        positions[:, self.task] = FAR * self.reach * direction[self.task]
+        moving = np.arange(len(joints))
+        for _ in range(PASSES):
+            if not moving.size:
+                break
+            here, there = joints[moving], positions[moving]
+            slopes = self.by_position(here, there) + 1e-15 * np.eye(len(self.task))
+            step = np.linalg.solve(slopes, self._stated(here, there)[:, :, None])[:, :, 0]
+            there[:, self.task] -= np.clip(step, -FAR * self.reach, FAR * self.reach)
+            positions[moving] = there
+            moving = moving[np.abs(step).max(axis=1) > 1e-13 * self.reach]
+        return positions, np.abs(self._stated(joints, positions)).max(axis=1, initial=0.0) < 1e-10 * self.reach
+
+    def by_position(self, joints: Array, positions: Array) -> Array:
+        """A = ∂Φ/∂x: equations by commanded coordinates."""
+        return derivative(lambda p: self._stated(joints, p), positions)[:, :, self.task]
+
+    def by_joints(self, joints: Array, positions: Array) -> Array:
+        """B = ∂Φ/∂q: equations by joint values."""
+        return derivative(lambda q: self._stated(q, positions), joints)
+
+    def side(self, joints: Array, positions: Array) -> Array:
+        """Positive in the assembly mode of this machine."""
+        return self._mode * self.at(joints, positions, [self._side])[:, 0]
+
+    def room(self, joints: Array, positions: Array) -> Array:
+        """By how much the nearest bound (the swing of a ball joint) is kept; 1 where there is none."""
+        return self.at(joints, positions, self._room).min(axis=1, initial=1.0)
+
+    def indicators(self, joints: Array) -> Array:
+        """The indicator of every branch at a pose, positive where its byte is 1."""
+        return self.indicators_at(joints, self.poses(self.axes(joints))[0])
+
+    def indicators_at(self, joints: Array, positions: Array) -> Array:
+        """The same at any joint values and position."""
+        return self.at(joints, positions, self._indicators)
+
+    def at(self, joints: Array, positions: Array, expressions: Sequence[sp.Expr]) -> Array:
+        """Expressions of the description in joints and position: a column each."""
+        symbols = [*(j.symbol for j in self.mechanism.joints), *POSITION]
+        return self._evaluate(expressions, symbols, np.hstack([joints, positions]))
+
+
+@dataclass(frozen=True)
+class LoopMachine(Machine):
+    """A machine that is a closed loop; its poses are regular, on its side and inside its bounds."""
+
+    closure: LoopClosure
+
+    def draw(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
+        """Random axis values of regular poses, over several turns where an axis has them and `farthest` (degrees) allows."""
+        turning = np.array([j.multi_turn for j in self.mechanism.joints])
+        pool = self.pool[np.abs(self.pool[:, turning]).max(axis=1, initial=0.0) < farthest]
+        chosen = pool[rng.integers(len(pool), size=count)]
+        if farthest < TURNS:
+            return chosen
+        return chosen + 360.0 * turning * rng.integers(-2, 3, chosen.shape)
+
+    def is_regular(self, axes: Array) -> Array:
+        """Whether axis values can be assembled, away from every singularity."""
+        with np.errstate(invalid="ignore"):
+            return (self._indicators(axes) > REGULAR * self._scales).all(axis=1)
+
+    def candidates(self, count: int, rng: Generator) -> Array:
+        """Random axis values of one turn, whether they can be assembled or not."""
+        size = np.where(self.closure.angles, 175.0, self.reach)
+        return rng.uniform(-1.0, 1.0, (count, len(size))) * size + self.closure.offsets
+
+    def is_possible(self, axes: Array) -> NDArray[np.bool_]:
+        """Whether axis values can be assembled, away from every singularity and inside every bound."""
+        possible = self.is_regular(axes)
+        joints = self.closure.joints(axes[possible])
+        possible[possible] = self.closure.room(joints, self.closure.poses(axes[possible])[0]) > 1e-3
+        return possible
+
+    def is_own(self, joints: Array, position: Array) -> NDArray[np.bool_]:
+        """Which solutions of the closure are this machine's: those on its side, inside its bounds."""
+        there = np.tile(position, (len(joints), 1))
+        return (self.closure.side(joints, there) > 0) & (self.closure.room(joints, there) >= 0)
+
+    @cached_property
+    def pool(self) -> Array:
+        """Axis values of regular poses inside every bound."""
+        axes = self._assembled
+        axes = axes[self.is_possible(axes)]
+        assert len(axes) >= 30, (self.mechanism.name, self.given)
+        return axes
+
+    @cached_property
+    def _assembled(self) -> Array:
+        """What the package can assemble: only a short cut, the closure is asked again."""
+        axes = self.candidates(CANDIDATES, np.random.default_rng(23))
+        return axes[self.robot.forward_batch(axes)[3] == softkin.Status.OK][:600]
+
+    @cached_property
+    def _scales(self) -> Array:
+        return np.nanmax(self._indicators(self._assembled), axis=0)
+
+    def _indicators(self, axes: Array) -> Array:
+        joints = self.closure.joints(axes)
+        positions = self.closure.poses(axes)[0]
+        sides = self.closure.side(joints, positions)
+        return np.column_stack([np.abs(self.closure.indicators_at(joints, positions)), sides])
+
+
+@cache
+def loop_machines_of(mechanism: Mechanism) -> tuple[LoopMachine, ...]:
+    """As it is drawn, and two with no two dimensions alike; each in both assembly modes."""
+    assert mechanism.assembly is not None
+    rng = np.random.default_rng(23)
+    modes = [{mechanism.assembly.parameter: mode} for mode in (False, True)]
+    found = [loop_machine(mechanism, f"nominal{' other' * k}", _nominal(mechanism) | mode) for k, mode in enumerate(modes)]
+    while len(found) < 4:
+        try:
+            found.append(loop_machine(mechanism, f"random {len(found) - 1}", _unequal(mechanism, rng) | modes[len(found) - 2]))
+        except softkin.KinematicsError as refused:
+            assert refused.status is softkin.Status.NOT_INITIALIZED  # noqa: PT017 - dimensions that form no machine
+    return tuple(found)
+
+
+def loop_machine(mechanism: Mechanism, label: str, given: Mapping[str, float]) -> LoopMachine:
+    """One machine; what is not given has its default."""
+    robot = softkin.catalogue()[mechanism.name](**given)
+    lengths = [abs(robot.parameters[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
+    closure = LoopClosure(mechanism, robot.parameters, sum(lengths))
+    return LoopMachine(label, mechanism, given, robot, closure, sum(lengths))
+
+
+def _nominal(mechanism: Mechanism) -> dict[str, float]:
+    return {p.name: p.nominal for p in mechanism.parameters}
+
+
+def _unequal(mechanism: Mechanism, rng: Generator) -> dict[str, float]:
+    """Dimensions of which no two are alike, and offsets."""
+    given: dict[str, float] = {}
+    smallest = min(p.nominal for p in mechanism.parameters if p.role is Role.LENGTH)
+    for p in mechanism.parameters:
+        if p.role is Role.FLAG:
+            given[p.name] = float(rng.integers(2))
+        elif p.role is Role.ANGLE:
+            given[p.name] = float(np.clip(p.nominal + rng.uniform(-20.0, 20.0), p.low, p.high))
+        else:
+            shift = 0.1 * smallest * rng.uniform(-1.0, 1.0) if p.role is Role.DISTANCE and p.low < 0 else 0.0
+            given[p.name] = float(p.nominal * rng.uniform(0.8, 1.2) + shift)
+    return given | {j.offset.name: float(rng.uniform(-30.0, 30.0)) for j in mechanism.joints}

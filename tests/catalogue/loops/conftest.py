@@ -1,0 +1,20 @@
+"""Every test that asks for a mechanism or its machines runs for every closed loop."""
+
+from __future__ import annotations
+
+import pytest
+
+from derive.description.mechanism import Mechanism
+from tests.catalogue.loop_machines import LOOPS, LoopMachine, loop_machines_of
+
+
+@pytest.fixture(params=LOOPS, ids=lambda m: m.name)
+def mechanism(request: pytest.FixtureRequest) -> Mechanism:
+    """A mechanism with rods."""
+    return request.param
+
+
+@pytest.fixture
+def machines(mechanism: Mechanism) -> tuple[LoopMachine, ...]:
+    """As it is drawn and with unequal dimensions, in both assembly modes."""
+    return loop_machines_of(mechanism)

@@ -1,0 +1,135 @@
+"""Packages with one formula wrong: the text of a generated module, changed and loaded, and what must notice it."""
+
+from __future__ import annotations
+
+import re
+import sys
+from dataclasses import dataclass, replace
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+import softkin
+from softkin._scalar import root
+
+from derive.description.mechanism import Mechanism
+from tests.catalogue.loop_machines import LOOPS, LoopMachine, loop_machines_of
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What stands in the text of a mechanism, and what is put there instead, wherever it stands."""
+
+    mechanism: str
+    right: str
+    wrong: str
+    noticed_by: str
+    """The test that must fail, by its module and name."""
+
+    def machines(self) -> tuple[LoopMachine, ...]:
+        """The machines of the tests, each with the spoiled package."""
+        mechanism = mechanism_named(self.mechanism)
+        robot_class = spoiled(mechanism, self.right, self.wrong)
+        return tuple(replace(one, robot=robot_class(**one.given)) for one in loop_machines_of(mechanism))
+
+
+def mechanism_named(name: str) -> Mechanism:
+    (found,) = (m for m in LOOPS if m.name == name)
+    return found
+
+
+def spoiled(mechanism: Mechanism, right: str, wrong: str) -> type[softkin.Mechanism]:
+    """The class of a mechanism from changed text: its scalar programs, and those on arrays where they hold the same."""
+    original = softkin.catalogue()[mechanism.name]
+    short = original.__module__.rpartition(".")[2]
+    scalar = _loaded(original.__module__, right, wrong)
+    arrays = _loaded(f"softkin._array_programs.{short}", right, wrong)
+    found: type[softkin.Mechanism] = getattr(scalar, original.__name__)
+    found._array_programs = lambda self: arrays.ArrayPrograms(self._constants)  # type: ignore[attr-defined,method-assign]
+    return found
+
+
+def _loaded(name: str, right: str, wrong: str) -> ModuleType:
+    source = import_module(name)
+    assert source.__file__ is not None
+    text = _INLINE_ROOT.sub(r"root(\1)", Path(source.__file__).read_text(encoding="utf-8"))
+    assert right in text or "_array_programs" in name, f"{name} has no {right!r}"
+    module = ModuleType(f"{name}_spoiled")
+    module.__dict__["root"] = root
+    sys.modules[module.__name__] = module  # named tuples and annotations look it up
+    try:
+        exec(compile(text.replace(right, wrong), f"{name} with {wrong}", "exec"), module.__dict__)
+    finally:
+        del sys.modules[module.__name__]
+    return module
+
+
+_INLINE_ROOT = re.compile(r"\(sqrt\((\w+)\) if \1 > 0\.0 else 0\.0\)")
+"""A root as the scalar programs have it: read as the call that the programs on arrays have."""
+FIVE_BAR, TRIPOD, DELTA = "Kin_P2C_Type1", "Kin_Tripod_Rotary", "Kin_Delta_P3C_Type3"
+ALIGNED = "(rod_1_x*rod_2_y - rod_1_y*rod_2_x)"
+FAULTS = {
+    "a knee on the other side": Fault(
+        FIVE_BAR, "root(sine_square_a1)*sigma_knee_1", "-root(sine_square_a1)*sigma_knee_1",
+        "test_round_trip.test_the_configuration_selects_the_same_axes",
+    ),
+    "a knee that has one side": Fault(
+        FIVE_BAR, "root(sine_square_a1)*sigma_knee_1", "root(sine_square_a1)",
+        "test_round_trip.test_the_configuration_selects_the_same_axes",
+    ),
+    "another byte for a knee": Fault(
+        FIVE_BAR, "branch_knee_2 = (", "branch_knee_2 = -(", "test_configuration.test_bytes_say_branch_and_turn"
+    ),
+    "two legs exchanged": Fault(
+        FIVE_BAR, "return (axis_a1, axis_a2)", "return (axis_a2, axis_a1)",
+        "test_round_trip.test_every_slot_satisfies_the_closure",
+    ),
+    "two legs of three exchanged": Fault(
+        DELTA, "return (axis_a1, axis_a2, axis_a3)", "return (axis_a1, axis_a3, axis_a2)",
+        "test_round_trip.test_every_slot_satisfies_the_closure",
+    ),
+    "the other assembly mode in forward kinematics": Fault(
+        FIVE_BAR, "root(height_square/normal_divisor)*assembly_sign", "-root(height_square/normal_divisor)*assembly_sign",
+        "test_type2.test_forward_has_one_solution_a_side",
+    ),
+    "one assembly mode alone": Fault(
+        DELTA, "*assembly_sign\n", "\n", "test_type2.test_forward_has_one_solution_a_side"
+    ),
+    "the other assembly mode not refused": Fault(
+        FIVE_BAR, f"assembly_sign*{ALIGNED}", f"({ALIGNED}**2)**0.5", "test_type2.test_the_other_assembly_mode_is_refused"
+    ),
+    "a path that is not stopped": Fault(
+        FIVE_BAR, f"assembly_sign*{ALIGNED}", f"({ALIGNED}**2)**0.5", "test_type2.test_a_path_is_stopped_before_the_crossing"
+    ),
+    "the least margin not looked at": Fault(
+        FIVE_BAR, "type2_arms_aligned >= min_type2_margin", "type2_arms_aligned >= 0.0",
+        "test_type2.test_the_least_margin_is_sharp",
+    ),
+    "a margin of another size": Fault(
+        FIVE_BAR, f"margin_arms_aligned = {ALIGNED}", f"margin_arms_aligned = 1.001*{ALIGNED}",
+        "test_type2.test_the_least_margin_is_sharp",
+    ),
+    "a margin that vanishes elsewhere": Fault(
+        FIVE_BAR, "margin_stretched_1 = (span_1_x*sin_a1 - y*cos_a1)", "margin_stretched_1 = (span_1_x*sin_a1 + y*cos_a1)",
+        "test_margins.test_type_1_margins_are_those_of_b_and_type_2_of_a",
+    ),
+    "a leg that reaches too far": Fault(
+        FIVE_BAR, "sine_square_a2 >= -1e-12", "sine_square_a2 >= -1e12",
+        "test_reach.test_every_answer_closes_the_loop_on_its_side",
+    ),
+    "a leg that does not reach its end": Fault(
+        FIVE_BAR, "sine_square_a1 >= -1e-12", "sine_square_a1 >= 1e-2",
+        "test_margins.test_a_way_out_ends_at_a_singularity_or_a_bound",
+    ),
+    "a slope of the wrong sign": Fault(
+        FIVE_BAR, "slope_2_by_a2 = ", "slope_2_by_a2 = -",
+        "test_margins.test_the_jacobian_is_that_of_the_closure_and_of_forward",
+    ),
+    "a ball joint that swings too far": Fault(
+        TRIPOD, "*x/arm_length_2) <= sin_max_angle_ball_joint", "*x/arm_length_2) <= 1.0",
+        "test_bounds.test_a_ball_joint_ends_sharply",
+    ),
+    "a turn too many": Fault(
+        FIVE_BAR, "360.0*turn_a2 - 360.0", "360.0*turn_a2", "test_configuration.test_a_named_turn_is_where_the_axis_is_put"
+    ),
+}  # fmt: skip

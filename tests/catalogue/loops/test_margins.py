@@ -1,0 +1,125 @@
+"""Margins against the matrices of the closure, A x' + B q' = 0, differentiated numerically; nothing of the derivation is read."""
+
+from __future__ import annotations
+
+import numpy as np
+from softkin import KinematicsError, Status
+
+from tests.catalogue.closure import Array
+from tests.catalogue.loop_machines import LoopMachine
+
+ROUNDING = 1e-10
+HALVINGS = 70
+LEG, PLATE, BOUND = range(3)
+"""What a way out can end at."""
+
+
+def matrices(machine: LoopMachine, axes: Array) -> tuple[Array, Array]:
+    """A and B."""
+    joints, positions = machine.closure.joints(axes), machine.closure.poses(axes)[0]
+    return machine.closure.by_position(joints, positions), machine.closure.by_joints(joints, positions)
+
+
+def margins(machine: LoopMachine, axes: Array) -> dict[str, Array]:
+    found = [machine.robot.singularity(row).margins for row in axes]
+    return {name: np.array([m[name] for m in found]) for name in machine.robot.MARGINS}
+
+
+def is_constant(ratios: Array) -> bool:
+    return bool(np.ptp(ratios) < ROUNDING * np.abs(ratios).max())
+
+
+def test_type_1_margins_are_those_of_b_and_type_2_of_a(machines: tuple[LoopMachine, ...]) -> None:
+    """But for a factor made of parameters: leg by leg, where each has a joint of its own, and in sign."""
+    for machine in machines:
+        axes = machine.draw(40, np.random.default_rng(1))
+        a, b = matrices(machine, axes)
+        found = margins(machine, axes)
+        assembly = machine.mechanism.assembly
+        assert assembly is not None
+        assert is_constant(np.linalg.det(a) / found[assembly.margin])
+        legs = [name for name in found if name != assembly.margin]
+        assert is_constant(np.linalg.det(b) / np.prod([found[name] for name in legs], axis=0))
+        for k, branch in enumerate(machine.mechanism.branches):
+            assert legs[k] == branch.margin
+            assert is_constant(b[:, k, k] / found[branch.margin])
+
+
+def test_margins_have_no_unit(machines: tuple[LoopMachine, ...]) -> None:
+    """Of the order of one in size, and the same for a machine drawn in other units."""
+    for machine in machines:
+        axes = machine.draw(40, np.random.default_rng(2))
+        scaled = axes.copy()
+        scaled[:, ~machine.closure.angles] *= 25.4
+        lengths = {p.name for p in machine.robot.PARAMETERS if p.unit == "u"}
+        larger = machine.changed(**{n: 25.4 * v for n, v in machine.robot.parameters.items() if n in lengths})
+        for row, other in zip(axes, scaled, strict=True):
+            here, there = machine.robot.singularity(row).margins, larger.singularity(other).margins
+            assert max(abs(here[n] - there[n]) for n in here) < 1e-9
+            assert max(map(abs, here.values())) <= 2.0 + 1e-9
+
+
+def test_the_jacobian_is_that_of_the_closure_and_of_forward(machines: tuple[LoopMachine, ...]) -> None:
+    """-A^-1 B to rounding; central differences of the package's own forward kinematics to what they are worth."""
+    step = 1e-4
+    for machine in machines:
+        axes = machine.draw(40, np.random.default_rng(3))
+        a, b = matrices(machine, axes)
+        derived = np.array([machine.robot.jacobian(row) for row in axes])
+        size = np.abs(derived).max(axis=(1, 2))
+        exact = -np.linalg.solve(a, b)
+        assert (np.abs(derived - exact).max(axis=(1, 2)) < 1e-13 * np.linalg.cond(a) * np.maximum(size, 1.0) + 1e-11 * size).all()
+        for i, unit in enumerate(machine.closure.units):
+            shift = step * np.eye(axes.shape[1])[i]
+            ahead, behind = (machine.robot.forward_batch(axes + s)[0] for s in (shift, -shift))
+            slope = (ahead - behind)[:, machine.closure.task] / (2 * step * unit)
+            assert (np.abs(slope - derived[:, :, i]).max(axis=1) < 1e-6 * size).all()
+
+
+def test_a_way_out_ends_at_a_singularity_or_a_bound(machines: tuple[LoopMachine, ...]) -> None:
+    """Straight on until the slot is refused: there a leg is stretched, or a ball joint at its end, or the plate lost."""
+    rng = np.random.default_rng(4)
+    reasons = []
+    for machine in machines:
+        for axes in machine.draw(6, rng):
+            start = machine.closure.poses(axes[None])[0][0]
+            direction = np.zeros(3)
+            direction[machine.closure.task] = rng.normal(size=len(machine.closure.task))
+            direction *= 4 * machine.reach / abs(direction[machine.closure.task[-1]])  # along X a biglide never ends
+            end = start + _edge(machine, start, direction, axes) * direction
+            code = machine.own(axes[None])[0].tolist()
+            reached = np.array(machine.changed(min_type2_margin=0.0).inverse((end, None), code, axes))
+            near = _distances(machine, reached, end) / _distances(machine, axes, start)
+            reasons.append(int(near.argmin()))
+            assert near.min() < 1e-4, (machine.mechanism.name, near)
+    assert LEG in reasons
+    assert not machines[0].mechanism.bounds or BOUND in reasons
+
+
+def _distances(machine: LoopMachine, axes: Array, position: Array) -> Array:
+    """From what ends a way, by the closure: a leg that is stretched, a plate that is lost, a bound."""
+    joints = machine.closure.joints(axes[None])
+    legs = np.linalg.det(machine.closure.by_joints(joints, position[None]))[0]
+    plate = np.linalg.det(machine.closure.by_position(joints, position[None]))[0]
+    return np.abs([legs, plate, machine.closure.room(joints, position[None])[0]])
+
+
+def _edge(machine: LoopMachine, start: Array, direction: Array, axes: Array) -> float:
+    """The share of the way at which the slot of a pose stops answering."""
+    robot = machine.changed(min_type2_margin=0.0)
+    code = machine.own(axes[None])[0]
+    shares = np.linspace(0.0, 1.0, 4001)
+    answers = robot.inverse_batch(start + shares[:, None] * direction, None, code, axes)[1] == Status.OK
+    first = int(answers.argmin())
+    assert answers[0] and not answers[first]
+    low, high = float(shares[first - 1]), float(shares[first])
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        try:
+            robot.inverse((start + middle * direction, None), code.tolist(), axes)
+        except KinematicsError as refused:
+            assert refused.status is Status.UNREACHABLE
+            high = middle
+        else:
+            low = middle
+    return low

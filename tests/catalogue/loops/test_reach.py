@@ -1,0 +1,86 @@
+"""What can be reached, leg by leg: the equation of a leg has a root in its own joint, or every slot is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+from softkin import Status
+
+from tests.catalogue.closure import Array
+from tests.catalogue.loop_machines import LoopMachine, loop_machine
+from tests.catalogue.test_round_trip import slots
+
+PLACES = 300
+SAMPLES = 720
+"""Of a joint: a full turn, or as far as anything reaches."""
+CLEAR = 1e-4
+"""Of the reach: a leg whose equation comes nearer to zero than this without crossing it is not judged."""
+
+
+def places(machine: LoopMachine) -> Array:
+    """Somewhat farther than regular poses are, in every direction."""
+    far = 1.3 * np.abs(machine.closure.poses(machine.pool[:100])[0]).max(axis=0)
+    return np.random.default_rng(11).uniform(-1.0, 1.0, (PLACES, 3)) * far
+
+
+def answers(machine: LoopMachine, positions: Array) -> tuple[Array, Array]:
+    """Axis values and whether there are any, by slot and place, with the least margin off."""
+    robot = machine.changed(min_type2_margin=0.0)
+    found = [robot.inverse_batch(positions, None, slot + (0,) * len(robot.PERIOD_AXES)) for slot in slots(machine)]
+    assert all(set(statuses.tolist()) <= {Status.OK, Status.UNREACHABLE} for _, statuses in found)
+    return np.array([axes for axes, _ in found]), np.array([statuses == Status.OK for _, statuses in found])
+
+
+def reaches(machine: LoopMachine, positions: Array, leg: int) -> tuple[Array, Array]:
+    """Whether a leg reaches places, and whether that is clear: its equation over all values of its joint."""
+    ends = np.pi if machine.closure.angles[leg] else 3 * machine.reach
+    values = np.linspace(-ends, ends, SAMPLES)
+    joints = np.zeros((SAMPLES, len(machine.closure.angles)))
+    joints[:, leg] = values
+    rows = [machine.closure.equations(joints, np.tile(p, (SAMPLES, 1)), np.eye(3))[:, leg] for p in positions]
+    low, high = np.min(rows, axis=1), np.max(rows, axis=1)
+    return (low < 0) & (high > 0), np.minimum(np.abs(low), np.abs(high)) > CLEAR * machine.reach
+
+
+def test_every_answer_closes_the_loop_on_its_side(machines: tuple[LoopMachine, ...]) -> None:
+    """Anywhere, reachable or not, in every slot."""
+    for machine in machines:
+        positions = places(machine)
+        found, answered = answers(machine, positions)
+        assert 0 < answered.sum() < answered.size
+        for axes, there in zip(found, answered, strict=True):
+            if there.any():
+                assert machine.miss(axes[there], positions[there], np.tile(np.eye(3), (there.sum(), 1, 1))).max() < 1e-9
+                joints = machine.closure.joints(axes[there])
+                assert (machine.closure.side(joints, positions[there]) > -1e-9).all()
+                assert (machine.closure.room(joints, positions[there]) > -1e-9).all()
+
+
+def test_a_slot_is_refused_where_a_leg_does_not_reach_and_belongs_to_one_mode_where_all_do(
+    machines: tuple[LoopMachine, ...],
+) -> None:
+    """Of machines whose legs have a joint each."""
+    symbols = [j.symbol for j in machines[0].mechanism.joints]
+    equations = machines[0].mechanism.equations
+    own = [{s for s in symbols if s in e.free_symbols} == {symbol} for e, symbol in zip(equations, symbols, strict=True)]
+    if not all(own):
+        assert machines[0].mechanism.name in ("MC_KIN_TYPE_12_XY", "Kin_P2X_Type2")
+        return
+    for machine in machines[::2]:
+        positions = places(machine)[:150]
+        legs = [reaches(machine, positions, leg) for leg in range(len(symbols))]
+        clear = np.all([sure for _, sure in legs], axis=0)
+        all_reach = np.all([there for there, _ in legs], axis=0)
+        modes = [answers(one, positions)[1].astype(int) for one in _both_modes(machine)]
+        assert not (modes[0] + modes[1])[:, clear & ~all_reach].any()
+        together = (modes[0] + modes[1])[:, clear & all_reach]
+        assert (together <= 1).all()
+        assert (together == 1).all() or machine.mechanism.bounds
+        assert together.any()
+
+
+def _both_modes(machine: LoopMachine) -> tuple[LoopMachine, LoopMachine]:
+    assembly = machine.mechanism.assembly
+    assert assembly is not None
+    flag = assembly.parameter
+    other = {**machine.given, flag: not machine.given[flag]}
+    return machine, loop_machine(machine.mechanism, "other mode", other)

@@ -1,0 +1,236 @@
+"""Nothing is lost where robots stand: poses planted near A4 = 0 and 180 degrees and near a straight elbow, and paths there."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pytest
+import softkin
+from softkin import Status
+
+from derive.mechanisms.kin_ac6_rzryryrxryrz_j6offset import MECHANISM
+from tests.catalogue.search.arms import Array
+from tests.catalogue.search.planted import ARM, KINDS, OFFSETS, Planted, planted
+from tests.text.controller import OK, Controller
+from tests.text.units import compiled
+
+STRAIGHT = float(np.degrees(np.arctan2(ARM["d4"], -ARM["a3"])))
+REGULAR = 1e-3
+"""Where the smallest singular value of the scaled Jacobian is larger, a pose is regular."""
+
+
+def check_answers(case: Planted) -> None:
+    """Every pose is answered on its own branch, and met."""
+    positions, rotations, configurations, _ = case.robot.forward_batch(case.axes)
+    found, statuses = case.robot.inverse_batch(positions, rotations, configurations, case.references)
+    refused = np.flatnonzero(statuses != Status.OK)
+    example = case.axes[refused[:1]].tolist()
+    assert not len(refused), f"offset {case.lateral}: {len(refused)} refused, such as {example}"
+    reached, turned, _, _ = case.robot.forward_batch(found)
+    assert np.abs(reached - positions).max() < 1e-6
+    assert np.abs(turned - rotations).max() < 1e-9
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("lateral", OFFSETS)
+def test_planted_poses(kind: str, lateral: float) -> None:
+    check_answers(planted(kind, lateral, 60, 11))
+
+
+LOST = {
+    150.0: (
+        (101.003055, -155.763074, 94.76272379750108, -19.795488, -77.784248, -12.027807),
+        (-15.917461476755477, 7.477319877444728, 94.78352380036634, 8.419675022612154, -58.19733256469311, 137.309398524),
+    ),
+    -300.0: (
+        (-33.66869272827205, -148.92608485920607, 94.80437491638847, -31.24743988, 23.7631743457, -160.16310682181964),
+        (102.38847764684363, -175.14384556208714, 94.76364659324585, -6.650570097147176e-11, 64.26025663, -109.14666664),
+    ),
+}
+"""Poses with a guard or a value that turns twice between two trials: a dent that tangents, a cubic or both do not see."""
+
+
+@pytest.mark.parametrize(("lateral", "axes"), [(lateral, axes) for lateral, poses in LOST.items() for axes in poses])
+@pytest.mark.parametrize("turned", (0.0, 0.5, 1.7, 3.1, 4.4, 90.0))
+def test_dents_between_two_trials_are_seen(lateral: float, axes: tuple[float, ...], turned: float) -> None:
+    """The first trials lie otherwise with every reference."""
+    robot = softkin.Ac6RZRYRYRXRYRZJ6Offset(**ARM, j6_offset_x=lateral)
+    frame, configuration = robot.forward(axes)
+    for reference in ((0.0,) * 5 + (turned,), (*axes[:5], axes[5] + turned)):
+        answer = robot.inverse(frame, configuration, reference)
+        assert np.abs(np.subtract(robot.forward(answer)[0].position, frame.position)).max() < 1e-6
+        _, statuses = robot.inverse_batch([frame.position], [frame.rotation], configuration, [reference])
+        assert statuses.tolist() == [Status.OK]
+
+
+FOLDED = {**ARM, "a1": 0.0, "a3": 0.0, "d4": ARM["a2"], "d6": 0.0}
+"""The folded elbow puts the wrist on axes 1 and 2."""
+
+
+@pytest.mark.parametrize("lateral", (1e-3, 60.0, -300.0))
+@pytest.mark.parametrize("unit", (1.0, 1e-3))
+@pytest.mark.parametrize("lengths", (FOLDED, {**ARM, "a1": 0.0, "a3": 0.0}))
+def test_a_folded_elbow_puts_the_wrist_on_the_first_axes(lateral: float, unit: float, lengths: dict[str, float]) -> None:
+    """Right angles, and elbows next to folded and stretched: axes 1 and 2 turn fast where the elbow is singular, or are free."""
+    rng = np.random.default_rng(19)
+    near = planted("elbow", lateral, 60, 20).axes
+    near[:, 2] += 90.0 - STRAIGHT
+    axes = np.concatenate([rng.choice((-90.0, 0.0, 90.0, 180.0), (60, 6)), near])
+    robot = softkin.Ac6RZRYRYRXRYRZJ6Offset(**{k: v * unit for k, v in lengths.items()}, j6_offset_x=lateral * unit)
+    positions, rotations, configurations, _ = robot.forward_batch(axes)
+    for references in (axes, np.zeros_like(axes), rng.uniform(-180.0, 180.0, axes.shape)):
+        found, statuses = robot.inverse_batch(positions, rotations, configurations, references)
+        assert (statuses == Status.OK).all(), axes[statuses != Status.OK][:1].tolist()
+        reached, turned, _, _ = robot.forward_batch(found)
+        assert np.abs(reached - positions).max() < 1e-6 * unit
+        assert np.abs(turned - rotations).max() < 1e-9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS[1:])
+@pytest.mark.parametrize("lateral", OFFSETS)
+def test_a_hundred_thousand_planted_poses(kind: str, lateral: float) -> None:
+    check_answers(planted(kind, lateral, 3710, 12))
+
+
+def test_the_block_answers_two_thousand_planted_poses_as_python_does() -> None:
+    rng = np.random.default_rng(13)
+    for kind, lateral in product(KINDS[1:], OFFSETS):
+        case = planted(kind, lateral, 75, int(rng.integers(1e6)))
+        block = Controller(compiled(MECHANISM), MECHANISM)
+        assert block.initialise({**ARM, "j6_offset_x": lateral}) == OK
+        for axes, reference in zip(case.axes, case.references, strict=True):
+            frame, configuration = case.robot.forward(tuple(axes))
+            status, answer = block.inverse(frame.position, frame.rotation, configuration, tuple(reference))
+            assert status == OK, axes.tolist()
+            reached = case.robot.forward(answer[:6])[0]
+            assert np.abs(np.subtract(reached.position, frame.position)).max() < 1e-8
+            assert np.abs(np.subtract(reached.rotation, frame.rotation)).max() < 1e-10
+            if is_regular(case.robot, axes):
+                expected = case.robot.inverse(frame, configuration, tuple(reference))
+                assert np.abs(np.subtract(answer[:6], expected)).max() < 1e-6
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("lateral", (1e-3, 8.0, 60.0, -300.0))
+def test_plain_numbers_and_batches_agree(kind: str, lateral: float) -> None:
+    case = planted(kind, lateral, 12, 14)
+    positions, rotations, configurations, _ = case.robot.forward_batch(case.axes)
+    found, statuses = case.robot.inverse_batch(positions, rotations, configurations, case.references)
+    assert (statuses == Status.OK).all()
+    for k, axes in enumerate(case.axes):
+        one = case.robot.inverse((positions[k], rotations[k]), tuple(map(int, configurations[k])), tuple(case.references[k]))
+        if is_regular(case.robot, axes):
+            assert np.abs(np.subtract(one, found[k])).max() < 1e-6
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("lateral", (8.0, 60.0, -300.0))
+def test_nothing_is_missed_that_a_scan_finds(kind: str, lateral: float) -> None:
+    case = planted(kind, lateral, 12, 15)
+    seen = 0
+    for axes in case.axes:
+        frame, _ = case.robot.forward(tuple(axes))
+        solutions = [np.array(a) for s in case.robot.inverse_all(frame) if s.axes is not None for a in (s.axes, *s.others)]
+        for root in scanned(case.robot, frame):
+            seen += 1
+            assert min(abs(np.exp(1j * np.radians(s[5])) - np.exp(1j * root)) for s in solutions) < 1e-5
+    assert seen > 30
+
+
+def scanned(robot: softkin.Ac6RZRYRYRXRYRZJ6Offset, frame: softkin.Frame, trials: int = 6000) -> list[float]:
+    """A6 (radians) at every simple root that changes the sign of the trial between neighbours of a scan."""
+    joint = np.linspace(0.0, 2 * np.pi, trials, endpoint=False)
+    found: list[float] = []
+    for shoulder, side in product((1.0, -1.0), repeat=2):
+
+        def value(t: Array, shoulder: float = shoulder, side: float = side) -> tuple[Array, Array]:
+            pose = dict(zip("xyz", frame.position, strict=True)) | {
+                f"r{i + 1}{j + 1}": frame.rotation[i][j] for i, j in product(range(3), repeat=2)
+            }
+            given = {"free_a1": 0.0, "free_a2": 0.0, "freed": -1.0, "freed_angle": 0.0, "side": side, "tried": t}
+            given |= {f"goal_{n}": v for n, v in pose.items()} | {"wanted_elbow": 1.0, "wanted_shoulder": shoulder}
+            values = tuple(given[name] for name in sorted(given))
+            with np.errstate(all="ignore"):
+                said = robot._array_programs().try_joint(values, np.zeros(len(t), np.uint8))
+            return np.asarray(said[0]), np.asarray(said[2])
+
+        low, high = joint, joint + joint[1]
+        (f, g), (f1, g1) = value(low), value(high)
+        chosen = (f * f1 < 0.0) & (g > 1e-9) & (g1 > 1e-9) & (np.abs(f - f1) < 0.2)  # more is a jump
+        low, high, f = low[chosen], high[chosen], f[chosen]
+        for _ in range(60):
+            middle = (low + high) / 2
+            same = value(middle)[0] * f > 0.0
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        left = np.abs(value(low)[0]) < 1e-10
+        found += low[left].tolist()
+    return found
+
+
+def is_regular(robot: softkin.Ac6RZRYRYRXRYRZJ6Offset, axes: Array) -> bool:
+    """By the smallest singular value of the Jacobian, lengths in those of the machine."""
+    jacobian = np.array(robot.jacobian(tuple(axes)))
+    jacobian[:3] /= ARM["a1"] + ARM["a2"] + ARM["d4"]
+    return bool(np.linalg.svd(jacobian, compute_uv=False)[-1] > REGULAR)
+
+
+def test_the_example_that_no_slot_answered() -> None:
+    robot, axes = softkin.Ac6RZRYRYRXRYRZJ6Offset(**ARM, j6_offset_x=60.0), (180.0, 0.0, -90.0, 180.0, 0.0, 0.0)
+    frame, configuration = robot.forward(axes)
+    assert np.abs(np.subtract(robot.inverse(frame, configuration, axes), axes)).max() < 1e-9
+    found = [a for s in robot.inverse_all(frame) if s.axes is not None for a in (s.axes, *s.others)]
+    assert min(np.abs(np.exp(1j * np.radians(a)) - np.exp(1j * np.radians(axes))).max() for a in found) < 1e-9
+
+
+@pytest.mark.parametrize("distance", (1e-3, 1e-6, 1e-9, 1e-12, 0.0))
+def test_a_straight_wrist_is_regular(distance: float) -> None:
+    rng = np.random.default_rng(16)
+    axes = rng.uniform(-180.0, 180.0, (80, 6))
+    axes[:, 3] = rng.choice((0.0, 180.0), 80) + distance
+    robot = softkin.Ac6RZRYRYRXRYRZJ6Offset(**ARM, j6_offset_x=60.0)
+    positions, rotations, configurations, _ = robot.forward_batch(axes)
+    regular = np.array([is_regular(robot, a) for a in axes])
+    for references in (axes, np.zeros_like(axes), rng.uniform(-180.0, 180.0, (80, 6))):
+        assert (robot.inverse_batch(positions, rotations, configurations, references)[1] == Status.OK).all()
+    found = robot.inverse_batch(positions, rotations, configurations, axes)[0]
+    assert np.abs(found - axes)[regular].max() < 1e-6
+
+
+def test_paths_through_a_straight_wrist_do_not_stop() -> None:
+    """27 straight lines of joints through A4 = 0, every byte open but those of shoulder and elbow."""
+    robot, rng = softkin.Ac6RZRYRYRXRYRZJ6Offset(**ARM, j6_offset_x=60.0), np.random.default_rng(17)
+    followed = 0
+    while followed < 27:
+        middle = np.array([*rng.uniform(-120, 120, 3), 0.0, *rng.uniform(-120, 120, 2)])
+        path = middle + np.linspace(-1.0, 1.0, 81)[:, None] * rng.uniform(-4, 4, 6)
+        if not all(is_regular(robot, row) for row in path):
+            continue
+        axes = path[0]
+        for expected in path:
+            frame, configuration = robot.forward(tuple(expected))
+            held = (*configuration[:2], 0, *configuration[3:4], *configuration[4:])
+            axes = np.array(robot.inverse(frame, held, tuple(axes)))
+            assert np.abs(axes - expected).max() < 1e-6
+        followed += 1
+
+
+@pytest.mark.parametrize("lateral", (60.0, -35.0))
+@pytest.mark.parametrize("lengths", (ARM, {**ARM, "a1": 0.0, "a3": 0.0}, {k: v / 1000 for k, v in ARM.items()}))
+def test_regular_poses_at_right_angles(lateral: float, lengths: dict[str, float]) -> None:
+    lateral = lateral / 1000 if lengths["d1"] < 1 else lateral
+    robot, rng = softkin.Ac6RZRYRYRXRYRZJ6Offset(**lengths, j6_offset_x=lateral), np.random.default_rng(18)
+    grid = np.array(list(product((-90.0, 0.0, 90.0, 180.0), repeat=6)))
+    axes = grid[rng.choice(len(grid), 600, replace=False)]
+    jacobians = np.array([robot.jacobian(tuple(a)) for a in axes])
+    jacobians[:, :3] /= lengths["a1"] + lengths["a2"] + lengths["d4"]
+    axes = axes[np.linalg.svd(jacobians, compute_uv=False)[:, -1] > 1e-6]
+    assert len(axes) > 100
+    positions, rotations, configurations, _ = robot.forward_batch(axes)
+    for references in (axes, np.zeros_like(axes), rng.uniform(-180.0, 180.0, axes.shape)):
+        found, statuses = robot.inverse_batch(positions, rotations, configurations, references)
+        assert (statuses == Status.OK).all()
+        reached, turned, _, _ = robot.forward_batch(found)
+        assert np.abs(reached - positions).max() < 1e-9 * lengths["d1"]
+        assert np.abs(turned - rotations).max() < 1e-10

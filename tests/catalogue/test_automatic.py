@@ -1,0 +1,152 @@
+"""What the reference decides, and what it does not: open branches and open periods."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+from softkin import Status
+
+from derive.description.mechanism import Role
+from tests.catalogue.closure import Array
+from tests.catalogue.machines import LENGTHS, Machine
+from tests.catalogue.test_round_trip import slots
+
+SQUARE_DEGREES = 1e-6
+"""Below this two squared distances of rotary axes are equal."""
+SHARE = 1e-6
+"""Of the machine's scale: below the square of this length two squared distances of linear axes are equal."""
+
+
+def tie_of(machine: Machine) -> float:
+    """What squared distances tie within."""
+    if machine.closure.angles.any():
+        return SQUARE_DEGREES
+    lengths = [p for p in machine.mechanism.parameters if p.role in LENGTHS or (p.role is Role.DISTANCE and p.low >= 0.0)]
+    return (SHARE * sum(abs(machine.robot.parameters[p.name]) for p in lengths)) ** 2
+
+
+def squared(machine: Machine, axes: Array, references: Array) -> Array:
+    """The squared distance over the rotary axes in degrees, over the linear ones where there is none."""
+    angles = machine.closure.angles
+    counted = angles if angles.any() else ~angles
+    return np.sum((axes - references)[:, counted] ** 2, axis=1)
+
+
+def by_slot(machine: Machine, frames: tuple[Array, Array], references: Array) -> list[Array]:
+    """The axes of every slot with all periods open; not a number where a slot does not answer."""
+    robot = machine.changed(check_limits=False)
+    found = []
+    for slot in slots(machine):
+        axes, statuses = robot.inverse_batch(*frames, slot + (0,) * len(robot.PERIOD_AXES), references)
+        assert np.isnan(axes[~machine.answers(statuses)]).all()
+        found.append(axes)
+    return found
+
+
+def distances_of(machine: Machine, answers: list[Array], references: Array) -> Array:
+    """Of every slot from the reference; a slot that does not answer is infinitely far."""
+    return np.nan_to_num(np.stack([squared(machine, a, references) for a in answers]), nan=np.inf)
+
+
+def test_an_open_branch_is_the_nearest(machines: tuple[Machine, ...]) -> None:
+    for machine in machines:
+        robot = machine.changed(check_limits=False)
+        axes = machine.draw(300, np.random.default_rng(1))
+        frames = machine.closure.poses(axes)
+        references = np.random.default_rng(2).uniform(-400, 400, axes.shape)
+        answers = by_slot(machine, frames, references)
+        distances = distances_of(machine, answers, references)
+        nearest = np.choose(distances.argmin(axis=0)[:, None], answers)
+        for byte in (0, 3):
+            configuration = (byte,) * robot.BRANCHES + (0,) * len(robot.PERIOD_AXES)
+            found, statuses = robot.inverse_batch(*frames, configuration, references)
+            assert (statuses == Status.OK).all()
+            assert np.abs(found - nearest).max() < 1e-11  # but for rounding: what branches share is computed once for all
+            for row in range(40):
+                frame = frames[0][row], frames[1][row]
+                assert np.abs(np.subtract(robot.inverse(frame, configuration, references[row]), found[row])).max() < 1e-10
+        nearest_slots = set(distances.argmin(axis=0))
+        if machine.mechanism.rods:  # some working modes of a loop are rare on its side
+            assert len(nearest_slots) >= len(answers) / 2
+        else:
+            assert nearest_slots == set(range(len(answers)))
+
+
+def test_a_tie_goes_to_the_lowest_slot(machines: tuple[Machine, ...]) -> None:
+    """Half-way between two slots, and less than the tie's width off it, slot 0 answers; beyond it the nearer one."""
+    for machine in machines:
+        tie = tie_of(machine)
+        axes = machine.draw(200, np.random.default_rng(3))
+        frames = machine.closure.poses(axes)
+        answers = by_slot(machine, frames, axes)
+        seen = np.zeros(len(axes), dtype=bool)
+        for (low, first), (high, second) in combinations(enumerate(answers), 2):
+            middle = (first + second) / 2
+            width = np.sqrt(squared(machine, first, second))
+            towards = (second - first) / width[:, None]
+            at_middle = by_slot(machine, frames, np.nan_to_num(middle))
+            same = (np.abs(at_middle[low] - first).max(axis=1) < 1e-9) & (np.abs(at_middle[high] - second).max(axis=1) < 1e-9)
+            away = np.nan_to_num([squared(machine, a, middle) for a in at_middle], nan=np.inf)
+            same &= (away >= away[low] - tie / 10).all(axis=0) & ((away < away[low] + 10 * tie).sum(axis=0) == 2)
+            seen |= same
+            # shifted by s towards the second slot, the squared distances differ by 2 * s * width
+            for excess, chosen in ((0.0, first), (0.5 * tie, first), (3 * tie, second), (-3 * tie, first)):
+                references = (middle + towards * (excess / (2 * width))[:, None])[same]
+                found = _automatic(machine, (frames[0][same], frames[1][same]), references)
+                assert np.abs(found - chosen[same]).max(initial=0.0) < 1e-9
+        assert seen.sum() > 20 or len(answers) == 1
+
+
+def _automatic(machine: Machine, frames: tuple[Array, ...], references: Array) -> Array:
+    robot = machine.changed(check_limits=False)
+    found, statuses = robot.inverse_batch(*frames, (0,) * len(robot.CONFIGURATION), references)
+    assert (statuses == Status.OK).all()
+    for row in range(0, len(references), 20):
+        scalar = robot.inverse((frames[0][row], frames[1][row]), (0,) * len(robot.CONFIGURATION), references[row])
+        assert np.abs(np.subtract(scalar, found[row])).max() < 1e-9
+    return found
+
+
+def test_an_open_period_is_the_nearest_to_the_reference(machines: tuple[Machine, ...]) -> None:
+    """Within half a turn: of the joint, where a coupling moves the axis with its neighbours."""
+    for machine in machines:
+        axes = machine.draw(300, np.random.default_rng(4))
+        references = np.random.default_rng(5).uniform(-3000, 3000, axes.shape)
+        turning = [i for i, j in enumerate(machine.mechanism.joints) if j.multi_turn]
+        for found in by_slot(machine, machine.closure.poses(axes), references):
+            solved = ~np.isnan(found).any(axis=1)
+            apart = np.degrees(machine.closure.joints(found) - machine.closure.joints(references))[solved][:, turning]
+            assert np.abs(apart).max(initial=0.0) <= 180.0 + 1e-8
+
+
+def test_where_nothing_is_open_the_reference_has_no_influence(machines: tuple[Machine, ...]) -> None:
+    """Not in the last bit."""
+    rng = np.random.default_rng(6)
+    for machine in machines:
+        axes = machine.draw(100, rng)
+        frames = machine.closure.poses(axes)
+        configurations = machine.robot.forward_batch(axes)[2]
+        answers = []
+        for size in (0.0, 1.0, 1e3, 1e8):
+            references = rng.uniform(-size, size, axes.shape)
+            answers.append(machine.robot.inverse_batch(*frames, configurations, references)[0])
+            frame = frames[0][0], frames[1][0]
+            scalar = machine.robot.inverse(frame, configurations[0].tolist(), references[0])
+            assert scalar == machine.robot.inverse(frame, configurations[0].tolist())
+        assert all((a == answers[0]).all() for a in answers)
+
+
+def test_without_a_configuration_branch_1_and_the_nearest_turn(machines: tuple[Machine, ...]) -> None:
+    for machine in machines:
+        robot = machine.changed(check_limits=False)
+        branches, periods = robot.DEFAULT_CONFIGURATION[: robot.BRANCHES], robot.DEFAULT_CONFIGURATION[robot.BRANCHES :]
+        assert set(branches) <= {1} and set(periods) <= {0}
+        assert len(periods) == len(robot.PERIOD_AXES)
+        axes = machine.draw(30, np.random.default_rng(7))
+        frames = machine.closure.poses(axes)
+        first = by_slot(machine, frames, np.zeros_like(axes))[0]
+        assert np.array_equal(robot.inverse_batch(*frames)[0], first, equal_nan=True)
+        for row in np.flatnonzero(~np.isnan(first).any(axis=1))[:5]:
+            scalar = robot.inverse((frames[0][row], frames[1][row]))
+            assert np.abs(np.subtract(scalar, first[row])).max() < 1e-10

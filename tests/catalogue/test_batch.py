@@ -1,0 +1,166 @@
+"""Batches: row by row what the scalar calls do, and nothing happens between the rows."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import softkin
+from numpy.random import Generator
+from softkin import KinematicsError, Status
+
+from tests.catalogue.closure import Array
+from tests.catalogue.machines import Machine
+from tests.catalogue.refusals import refusal
+
+ROWS = 120
+
+
+def mixed(machine: Machine, rng: Generator) -> tuple[Array, Array, Array, Array]:
+    """Poses, some out of reach, some with a frame that is none; configurations of every kind; any references."""
+    axes = machine.draw(ROWS, rng)
+    positions, rotations = machine.closure.poses(axes)
+    positions[::7] *= 1.4
+    positions[::13, 0] = np.nan
+    rotations[::17] *= 2.0
+    robot = machine.robot
+    branches = rng.integers(0, 4, (ROWS, robot.BRANCHES))
+    branches[::11] = 4
+    periods = np.where(rng.random((ROWS, len(robot.PERIOD_AXES))) < 0.5, 0, rng.integers(-2, 4, (ROWS, len(robot.PERIOD_AXES))))
+    references = rng.uniform(-500, 500, axes.shape)
+    references[::19, 0] = np.inf
+    return positions, rotations, np.hstack([branches, periods]), references
+
+
+def test_mixed_rows_are_the_scalar_calls(machines: tuple[Machine, ...]) -> None:
+    for number, machine in enumerate(machines):
+        positions, rotations, configurations, references = mixed(machine, np.random.default_rng(number))
+        found, statuses = machine.robot.inverse_batch(positions, rotations, configurations, references)
+        assert found.shape == (ROWS, len(machine.mechanism.joints)) and statuses.dtype == np.uint8
+        for row in range(ROWS):
+            frame = positions[row], rotations[row]
+            try:
+                scalar = machine.robot.inverse(frame, configurations[row].tolist(), references[row])
+            except KinematicsError as error:
+                assert statuses[row] == error.status
+                assert np.isnan(found[row]).all()
+            else:
+                assert statuses[row] == Status.OK
+                assert np.abs(np.subtract(scalar, found[row])).max() < 1e-9
+        assert {int(Status.OK), int(Status.BAD_INPUT)} <= set(statuses.tolist())
+
+
+def test_a_row_that_is_refused_leaves_the_others_alone(machines: tuple[Machine, ...]) -> None:
+    """Named branches and commanded turns that differ from row to row; then garbage in every fourth row."""
+    for number, machine in enumerate(machines):
+        rng = np.random.default_rng(number)
+        axes = machine.draw(48, rng)
+        positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
+        named = configurations.astype(int)
+        named[:, : machine.robot.BRANCHES] = rng.integers(1, 3, (48, machine.robot.BRANCHES))
+        before, statuses = machine.robot.inverse_batch(positions, rotations, named, axes)
+        spoiled = np.arange(48) % 4 == 3
+        positions[spoiled] = [np.nan, 0.0, np.inf]
+        named[spoiled & (rng.random(48) < 0.5)] = 300
+        after, found = machine.robot.inverse_batch(positions, rotations, named, axes)
+        assert (found[spoiled] == Status.BAD_INPUT).all() and np.isnan(after[spoiled]).all()
+        assert (found[~spoiled] == statuses[~spoiled]).all()
+        assert np.array_equal(after[~spoiled], before[~spoiled], equal_nan=True)
+
+
+def test_a_batch_is_its_parts(machines: tuple[Machine, ...]) -> None:
+    """Longer than a chunk, and bit for bit what each row gives alone."""
+    for machine in machines[1:2]:
+        axes = machine.draw(200, np.random.default_rng(1))
+        many = np.tile(axes, (101, 1))
+        forward = machine.robot.forward_batch(many)
+        inverse = machine.robot.inverse_batch(forward[0], forward[1], forward[2], many)
+        for whole, part in zip(forward, machine.robot.forward_batch(axes), strict=True):
+            assert (whole == np.tile(part, (101,) + (1,) * (part.ndim - 1))).all()
+        for whole, part in zip(inverse, machine.robot.inverse_batch(*forward[:3], many)[:2], strict=True):
+            assert (whole[:200] == part[-200:]).all()
+        assert (inverse[1] == Status.OK).all()
+
+
+def test_no_rows(machines: tuple[Machine, ...]) -> None:
+    robot = machines[0].robot
+    width, size = len(robot.AXES), len(robot.CONFIGURATION)
+    shapes = [part.shape for part in robot.forward_batch(np.zeros((0, width)))]
+    assert shapes == [(0, 3), (0, 3, 3), (0, size), (0,)]
+    for configurations in (None, np.zeros((0, size), int), [0] * size):
+        for references in (None, np.zeros((0, width)), [0.0] * width):
+            found = robot.inverse_batch(np.zeros((0, 3)), np.zeros((0, 3, 3)), configurations, references)
+            assert [part.shape for part in found] == [(0, width), (0,)]
+
+
+def test_one_row_may_stand_for_all(machines: tuple[Machine, ...]) -> None:
+    for machine in machines[:2]:
+        axes = machine.draw(30, np.random.default_rng(2))
+        positions, rotations = machine.closure.poses(axes)
+        robot = machine.changed(check_limits=False)
+        configuration, reference = robot.forward(axes[0])[1], axes[0]
+        one = robot.inverse_batch(positions, rotations, configuration, reference)
+        each = robot.inverse_batch(positions, rotations, [configuration] * 30, np.tile(reference, (30, 1)))
+        assert one[1][0] == Status.OK
+        assert machine.answers(one[1]).any()
+        assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(one, each, strict=True))
+        lists = robot.inverse_batch(positions.tolist(), rotations.tolist(), list(configuration), reference.tolist())
+        assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(one, lists, strict=True))
+
+
+def test_inputs_are_left_alone(machines: tuple[Machine, ...]) -> None:
+    machine = machines[1]
+    axes = machine.draw(30, np.random.default_rng(3))
+    positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
+    given = (positions, rotations, configurations, axes)
+    copies = [part.copy() for part in given]
+    machine.robot.inverse_batch(*given)
+    for part, copy in zip(given, copies, strict=True):
+        assert (part == copy).all()
+
+
+def wrong_calls(robot: softkin.Mechanism) -> list[tuple[object, ...]]:
+    """Arguments of `inverse_batch` of a wrong shape or type, one at a time."""
+    width, size = len(robot.AXES), len(robot.CONFIGURATION)
+    positions, rotations = np.zeros((5, 3)), np.tile(np.eye(3), (5, 1, 1))
+    wrong_positions: list[object] = [np.zeros(3), np.zeros((5, 2)), np.zeros((5, 4)), "abc", None]
+    wrong_positions += [[[1, 2, 3], [1, 2]], [["a"] * 3] * 5]
+    wrong_rotations: list[object] = [np.zeros((4, 3, 3)), np.zeros((5, 9)), np.zeros((5, 3, 2)), "abc", [["a"] * 3] * 3]
+    wrong_configurations = [np.zeros((4, size), int), np.zeros((5, size + 1), int), [0] * (size + 1), "abc", [[None] * size] * 5]
+    wrong_references = [np.zeros((4, width)), np.zeros((5, width + 1)), np.zeros(width + 1), 5.0, "abc", [["a"] * width] * 5]
+    calls: list[tuple[object, ...]] = [(wrong, rotations) for wrong in wrong_positions]
+    if robot.READS_ROTATION:
+        calls += [(positions, wrong) for wrong in wrong_rotations]
+    calls += [(positions, rotations, wrong) for wrong in wrong_configurations[: 5 if size else 4]]
+    calls += [(positions, rotations, np.zeros((5, size)) + 0.5)] if size else []
+    return calls + [(positions, rotations, None, wrong) for wrong in wrong_references]
+
+
+def test_wrong_shapes_and_types(machines: tuple[Machine, ...]) -> None:
+    robot = machines[0].robot
+    for arguments in wrong_calls(robot):
+        assert refusal(robot.inverse_batch, *arguments) is Status.BAD_INPUT
+    width = len(robot.AXES)
+    shapes = ((width,), (5, width + 1), (5, width, 1))
+    for axes in (*map(np.zeros, shapes), "abc", None, [["a"] * width], [[1.0], [1.0, 2.0]], 1j):
+        assert refusal(robot.forward_batch, axes) is Status.BAD_INPUT
+
+
+def test_several_threads_may_share_a_robot(machines: tuple[Machine, ...]) -> None:
+    from concurrent.futures import ThreadPoolExecutor
+
+    machine = machines[1]
+    axes = machine.draw(3000, np.random.default_rng(4))
+    expected = machine.robot.forward_batch(axes)[0]
+    with ThreadPoolExecutor(4) as pool:
+        for found in pool.map(lambda _: machine.robot.forward_batch(axes)[0], range(8)):
+            assert (found == expected).all()
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_any_number_of_rows(machines: tuple[Machine, ...], count: int) -> None:
+    machine = machines[1]
+    axes = machine.draw(count, np.random.default_rng(5))
+    forward = machine.robot.forward_batch(axes)
+    found, statuses = machine.robot.inverse_batch(*forward[:3], axes)
+    assert statuses.tolist() == [Status.OK] * count
+    assert np.abs(found - axes).max() < 1e-9

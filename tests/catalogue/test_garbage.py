@@ -1,0 +1,149 @@
+"""What is no pose, no axes and no numbers: a status and one clear message, and in a batch the neighbours unharmed."""
+
+from __future__ import annotations
+
+from math import inf, nan
+
+import numpy as np
+import pytest
+from softkin import Status
+
+from tests.catalogue.closure import Array
+from tests.catalogue.machines import Machine
+from tests.catalogue.refusals import refusal
+
+NUMBERS = (nan, inf, -inf, 1e300, -1e300, 1.1e9)
+"""Not finite, or beyond what is allowed."""
+NO_NUMBERS: tuple[object, ...] = ("12345678", None, 5, 5.0, [None] * 4, ["1", "2", "3", "4"], [[1.0], [2.0]], {"a": 1}, 1j)
+IDENTITY = np.eye(3)
+NO_ROTATIONS = {
+    "scaled": 1.001 * IDENTITY,
+    "shrunk": 0.5 * IDENTITY,
+    "zero": 0 * IDENTITY,
+    "reflected": np.diag([1.0, 1.0, -1.0]),
+    "turned inside out": -IDENTITY,
+    "sheared": IDENTITY + np.array([[0, 1e-3, 0], [0, 0, 0], [0, 0, 0]]),
+    "of rank one": np.ones((3, 3)),
+    "huge": 1e300 * IDENTITY,
+    "a little off": IDENTITY + 1.1e-4,
+}
+
+
+def some(machines: tuple[Machine, ...]) -> tuple[Machine, Array, Array, Array]:
+    machine = machines[-1]
+    axes = machine.draw(7, np.random.default_rng(1))
+    return (machine, axes, *machine.closure.poses(axes))
+
+
+def test_axis_values_that_are_no_numbers_of_reasonable_size(machines: tuple[Machine, ...]) -> None:
+    machine, axes, _, _ = some(machines)
+    robot = machine.robot
+    for i in range(axes.shape[1]):
+        for number in NUMBERS:
+            values = axes[0].copy()
+            values[i] = number
+            for call in (robot.forward, robot.orientation, robot.jacobian):
+                assert refusal(call, values) is Status.BAD_INPUT
+            assert robot.singularity(values).is_singular
+            table = axes.copy()
+            table[3] = values
+            positions, rotations, configurations, statuses = robot.forward_batch(table)
+            assert statuses.tolist() == [0, 0, 0, Status.BAD_INPUT, 0, 0, 0]
+            assert np.isnan(positions[3]).all() and np.isnan(rotations[3]).all() and not configurations[3].any()
+            for got, expected in zip((positions, rotations, configurations), robot.forward_batch(axes), strict=False):
+                assert (np.delete(got, 3, axis=0) == np.delete(expected, 3, axis=0)).all()
+
+
+def test_too_few_or_too_many_axes(machines: tuple[Machine, ...]) -> None:
+    machine, axes, positions, rotations = some(machines)
+    robot = machine.robot
+    frame = positions[0], rotations[0]
+    for wrong in ([], axes[0][:-1], [*axes[0], 0.0], [*axes[0], *axes[0]], *NO_NUMBERS):
+        for call in (robot.forward, robot.orientation, robot.jacobian, robot.singularity):
+            assert refusal(call, wrong) is Status.BAD_INPUT
+        if wrong is not None:  # no reference at all is allowed: zeros
+            assert refusal(robot.inverse, frame, None, wrong) is Status.BAD_INPUT
+            assert refusal(robot.inverse_all, frame, wrong) is Status.BAD_INPUT
+
+
+def test_positions_and_references_of_no_reasonable_size(machines: tuple[Machine, ...]) -> None:
+    machine, axes, positions, rotations = some(machines)
+    robot = machine.robot
+    own = machine.own(axes)
+    clean = robot.inverse_batch(positions, rotations, own)[0]
+    for i in range(3):
+        for number in NUMBERS:
+            wrong = positions.copy()
+            wrong[2, i] = number
+            assert refusal(robot.inverse, (wrong[2], rotations[2])) is Status.BAD_INPUT
+            found = robot.inverse_all((wrong[2], rotations[2]))
+            assert [s.status for s in found] == [Status.BAD_INPUT] * 2**robot.BRANCHES
+            assert all(s.axes is None for s in found)
+            got, statuses = robot.inverse_batch(wrong, rotations, own)
+            assert statuses.tolist() == [0, 0, Status.BAD_INPUT, 0, 0, 0, 0]
+            assert np.isnan(got[2]).all()
+            assert (np.delete(got, 2, axis=0) == np.delete(clean, 2, axis=0)).all()
+    for i, joint in enumerate(machine.mechanism.joints):
+        for number in NUMBERS:
+            references = np.zeros_like(axes)
+            references[4, i] = number
+            statuses = robot.inverse_batch(positions, rotations, own, references)[1]
+            read = statuses[4] == Status.BAD_INPUT
+            assert (np.delete(statuses, 4) == Status.OK).all()
+            assert read or (statuses[4] == Status.OK and not joint.multi_turn)  # a linear axis has one value
+            if read:
+                assert refusal(robot.inverse, (positions[4], rotations[4]), None, references[4]) is Status.BAD_INPUT
+
+
+@pytest.mark.parametrize("what", [*NO_ROTATIONS, *(f"{n}" for n in NUMBERS)])
+def test_frames_that_are_no_rotation(machines: tuple[Machine, ...], what: str) -> None:
+    """Refused where the rotation is read; not looked at where it is not."""
+    machine, axes, positions, rotations = some(machines)
+    robot, own = machine.robot, machine.own(axes)
+    wrongs = [NO_ROTATIONS[what] @ rotations[3]] if what in NO_ROTATIONS else []
+    if not wrongs:
+        for i in range(9):
+            entries = rotations[3].copy()
+            entries.flat[i] = float(what)
+            wrongs.append(entries)
+    clean = robot.inverse_batch(positions, rotations, own)[0]
+    for wrong in wrongs:
+        table = rotations.copy()
+        table[3] = wrong
+        got, statuses = robot.inverse_batch(positions, table, own)
+        if robot.READS_ROTATION:
+            assert statuses.tolist() == [0, 0, 0, Status.BAD_INPUT, 0, 0, 0]
+            assert np.isnan(got[3]).all()
+            assert refusal(robot.inverse, (positions[3], wrong)) is Status.BAD_INPUT
+            if machine.closure.follows_turn:
+                assert refusal(robot.project, wrong) is Status.BAD_INPUT
+            assert (np.delete(got, 3, axis=0) == np.delete(clean, 3, axis=0)).all()
+        else:
+            assert (statuses == Status.OK).all()
+            assert (got == clean).all()
+            assert np.allclose(robot.inverse((positions[3], wrong), own[3].tolist()), clean[3], rtol=0, atol=1e-10)
+
+
+def test_whether_the_rotation_is_read_is_said(machines: tuple[Machine, ...]) -> None:
+    machine, axes, positions, rotations = some(machines)
+    robot, own = machine.robot, machine.own(axes)
+    assert machine.closure.follows_rotation == robot.READS_ROTATION
+    if robot.READS_ROTATION:
+        assert refusal(robot.inverse_batch, positions) is Status.BAD_INPUT
+        assert refusal(robot.inverse, (positions[0], None)) is Status.BAD_INPUT
+    else:
+        assert (robot.inverse_batch(positions, None, own)[1] == Status.OK).all()
+        code = own[0].tolist()
+        assert robot.inverse((positions[0], None), code) == robot.inverse((positions[0], rotations[0]), code)
+
+
+def test_what_has_not_the_form_of_a_frame(machines: tuple[Machine, ...]) -> None:
+    machine, _, positions, rotations = some(machines)
+    robot = machine.robot
+    p, r = positions[0], rotations[0]
+    wrongs: list[object] = [None, 5, "frame", (), (p,), (p, r, r), (p[:2], r), ([*p, 0], r), (None, r), ("123", r)]
+    if robot.READS_ROTATION:
+        wrongs += [(p, r[:2]), (p, r.ravel()), (p, r[:, :2]), (p, 5), (p, "123456789"), (p, [["1"] * 3] * 3)]
+    for wrong in wrongs:
+        for call in (robot.inverse, robot.inverse_all):
+            assert refusal(call, wrong) is Status.BAD_INPUT

@@ -1,0 +1,202 @@
+"""Axis limits, and limits that no axis can see: tested last, with a tolerance, and never a reason to choose again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+import softkin
+from softkin import KinematicsError, Status
+
+from derive.description.mechanism import Mechanism
+from tests.catalogue.closure import Array
+from tests.catalogue.loci import loci
+from tests.catalogue.machines import Machine
+
+RELATIVE = 1e-9
+INSIDE, OUTSIDE = 0.5, 3.0
+"""Of the tolerance: beyond by the one is inside, by the other refused. Linear axes lie at up to a few hundred units."""
+
+
+FIRST_TURN = 99.0
+"""Degrees: axes that turn are on their first turn, and their limits too."""
+
+
+def poses(machine: Machine, seed: int) -> Array:
+    """Axis values that the vendor's limit ranges allow, on the first turn."""
+    axes = machine.draw(2000, np.random.default_rng(seed), farthest=FIRST_TURN)
+    fits = np.ones(len(axes), dtype=bool)
+    for i, joint in enumerate(machine.mechanism.joints):
+        low, high = joint.limit_range or (-1e6, 1e6)
+        fits &= (axes[:, i] > low + 60.0) & (axes[:, i] < high - 60.0)
+    return axes[fits]
+
+
+def one_pose(machine: Machine, seed: int) -> Array:
+    return poses(machine, seed)[0]
+
+
+def fitting(machines: tuple[Machine, ...]) -> tuple[Machine, ...]:
+    """Machines whose poses fit the vendor's ranges: without random offsets."""
+    return tuple(m for m in machines if not m.label.startswith("random"))
+
+
+def outcome(robot: softkin.Mechanism, machine: Machine, axes: Array, reference: Array | None = None) -> Status:
+    """The status of the way back, by a scalar call, the slots and a batch."""
+    positions, rotations = machine.closure.poses(axes[None])
+    configuration = robot.forward(axes)[1]
+    near = axes if reference is None else reference
+    found, statuses = robot.inverse_batch(positions, rotations, configuration, near)
+    try:
+        scalar = robot.inverse((positions[0], rotations[0]), configuration, near)
+    except KinematicsError as error:
+        assert error.status == statuses[0]
+        assert np.isnan(found).all()
+        assert "limit" in str(error)
+    else:
+        assert statuses[0] == Status.OK
+        assert np.abs(np.subtract(scalar, found[0])).max() < 1e-10
+        assert np.abs(np.subtract(scalar, axes)).max() < 1e-9
+    slots = robot.inverse_all((positions[0], rotations[0]), near)
+    (own,) = (s for s in slots if s.configuration[: robot.BRANCHES] == configuration[: robot.BRANCHES])
+    assert own.status == statuses[0]
+    assert (own.axes is None) == (own.status is not Status.OK)
+    return Status(int(statuses[0]))
+
+
+def check_both_ends(machine: Machine, axes: Array, key: str, value: float) -> None:
+    """Limits that end at a value: at it, inside the tolerance, beyond it, far beyond it, and not tested at all."""
+    far = 50.0
+    for lower, upper, end in ((value - far, value, f"upper_{key}"), (value, value + far, f"lower_{key}")):
+        tolerance = RELATIVE * (1.0 + abs(lower) + abs(upper))
+        inward = -1.0 if end.startswith("upper") else 1.0
+        for shift in (0.0, INSIDE * tolerance, OUTSIDE * tolerance, far / 2):
+            limits = {f"lower_{key}": lower, f"upper_{key}": upper, end: value + inward * shift}
+            expected = Status.OK if shift < tolerance else Status.UNREACHABLE
+            assert outcome(machine.changed(**limits), machine, axes) is expected, (end, shift)
+            assert outcome(machine.changed(**limits, check_limits=False), machine, axes) is Status.OK
+
+
+def test_every_axis_has_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    for machine in fitting(machines):
+        axes = one_pose(machine, 1)
+        for i, joint in enumerate(mechanism.joints):
+            check_both_ends(machine, axes, joint.key, float(axes[i]))
+
+
+def test_quantities_that_no_axis_sees_have_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """The relative elbow of a parallel arm, the joints of a coupled arm, the carriage of a belt gantry."""
+    for machine in machines:
+        axes = one_pose(machine, 2)
+        values = machine.closure.limited(machine.closure.joints(axes[None]))[0]
+        for quantity, value in zip(mechanism.limited, values, strict=True):
+            check_both_ends(machine, axes, quantity.name, float(value))
+    expected = {"Kin_PCC": {"elbow"}, "Kin_SCCC": {"joint_2", "joint_3"}}
+    expected |= dict.fromkeys(["Kin_P2Y", "Kin_HGantry2", "Kin_HGantry3", "Kin_TGantry2", "Kin_TGantry3"], {"x", "y"})
+    offered = {p.name.removeprefix("lower_") for p in machines[0].robot.PARAMETERS if p.name.startswith("lower_")}
+    assert offered - {j.key for j in mechanism.joints} == expected.get(mechanism.name, set())
+
+
+def test_forward_does_not_test_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    for machine in fitting(machines):
+        axes = machine.draw(20, np.random.default_rng(3))
+        limits = {f"{word}_{j.key}": value for j in mechanism.joints for word, value in (("lower", 1.0), ("upper", 2.0))}
+        found = machine.changed(**limits).forward_batch(axes)
+        for narrow, wide in zip(found, machine.robot.forward_batch(axes), strict=True):
+            assert (narrow == wide).all()
+
+
+def test_both_zero_is_no_limit(machines: tuple[Machine, ...]) -> None:
+    """One zero alone is a limit."""
+    for machine in fitting(machines):
+        axes = one_pose(machine, 4)
+        for i, joint in enumerate(machine.mechanism.joints):
+            key = joint.key
+            assert outcome(machine.changed(**{f"lower_{key}": 0.0, f"upper_{key}": 0.0}), machine, axes) is Status.OK
+            one_sided = machine.changed(**{f"lower_{key}": 0.0, f"upper_{key}": 300.0})
+            expected = Status.OK if 0 <= axes[i] <= 300 else Status.UNREACHABLE
+            other_turn = joint.multi_turn and axes[i] < -60.0  # its one value inside is a turn further
+            if not other_turn:
+                assert outcome(one_sided, machine, axes) is expected
+
+
+def test_a_range_of_less_than_a_turn_takes_its_value_inside(machines: tuple[Machine, ...]) -> None:
+    """Up to 350 degrees, wherever the reference is; a named period still rules, and is refused where it is outside."""
+    for machine in fitting(machines):
+        turning = [i for i, j in enumerate(machine.mechanism.joints) if j.multi_turn]
+        axes = one_pose(machine, 5)
+        positions, rotations = machine.closure.poses(axes[None])
+        for i in turning:
+            key = machine.mechanism.joints[i].key
+            for low, high in ((axes[i] - 10, axes[i] + 100), (axes[i] - 175, axes[i] + 175), (axes[i] - 100, axes[i] + 250)):
+                robot = machine.changed(**{f"lower_{key}": low, f"upper_{key}": high})
+                for turns in (-2, 0, 1):
+                    near = axes.copy()
+                    near[i] += 360.0 * turns
+                    near = machine.closure.axes(machine.closure.joints(near[None]))[0]
+                    branch = robot.forward(axes)[1][: robot.BRANCHES]
+                    configuration = branch + (0,) * len(robot.PERIOD_AXES)
+                    found, statuses = robot.inverse_batch(positions, rotations, configuration, near)
+                    assert statuses[0] == Status.OK
+                    assert abs(found[0, i] - axes[i]) < 1e-9
+                    scalar = robot.inverse((positions[0], rotations[0]), configuration, near)
+                    assert abs(scalar[i] - axes[i]) < 1e-9
+                named = list(robot.forward(axes)[1])
+                named[robot.BRANCHES + robot.PERIOD_AXES.index(i)] = 3
+                with pytest.raises(KinematicsError) as refused:
+                    robot.inverse((positions[0], rotations[0]), named, axes)
+                assert refused.value.status is Status.UNREACHABLE
+
+
+def test_a_wider_range_refuses_and_does_not_choose_again(machines: tuple[Machine, ...]) -> None:
+    """The value nearest to the reference is outside, one a turn away is inside: refused."""
+    for machine in fitting(machines):
+        axes = one_pose(machine, 6)
+        for i, joint in enumerate(machine.mechanism.joints):
+            if not joint.multi_turn or joint.coupling != 0 or joint.limit_range is not None:
+                continue
+            robot = machine.changed(**{f"lower_{joint.key}": axes[i] - 400.0, f"upper_{joint.key}": axes[i] + 100.0})
+            assert outcome(robot, machine, axes) is Status.OK
+            positions, rotations = machine.closure.poses(axes[None])
+            near = axes.copy()
+            near[i] += 360.0
+            configuration = robot.forward(axes)[1][: robot.BRANCHES] + (0,) * len(robot.PERIOD_AXES)
+            assert robot.inverse_batch(positions, rotations, configuration, near)[1][0] == Status.UNREACHABLE
+
+
+@pytest.mark.serial
+def test_an_open_branch_is_chosen_before_limits(machines: tuple[Machine, ...]) -> None:
+    """The nearest branch is outside, the other inside: refused, by name it would have been found."""
+    for machine in fitting(machines):
+        if machine.robot.BRANCHES == 0:
+            continue
+        bent = loci(machine)[0].joint
+        key = machine.mechanism.joints[bent].key
+        axes, other = next(_bent_a_little(machine, bent))
+        middle = (axes[bent] + other[bent]) / 2
+        low, high = (middle - 200, middle) if axes[bent] > middle else (middle, middle + 200)
+        robot = machine.changed(**{f"lower_{key}": low, f"upper_{key}": high})
+        positions, rotations = machine.closure.poses(axes[None])
+        frame = positions[0], rotations[0]
+        periods = (0,) * len(robot.PERIOD_AXES)
+        for automatic in ((0,) * robot.BRANCHES + periods, (3,) * robot.BRANCHES + periods):
+            with pytest.raises(KinematicsError) as refused:
+                robot.inverse(frame, automatic, axes)
+            assert refused.value.status is Status.UNREACHABLE
+            assert robot.inverse_batch(positions, rotations, automatic, axes)[1][0] == Status.UNREACHABLE
+        named = [s.axes for s in robot.inverse_all(frame, axes) if s.status is Status.OK]
+        assert other.tolist() in [pytest.approx(a) for a in named]
+        assert len(named) < 2**robot.BRANCHES
+        assert axes.tolist() not in [pytest.approx(a) for a in named]
+
+
+def _bent_a_little(machine: Machine, bent: int) -> Iterator[tuple[Array, Array]]:
+    """Poses whose joint is little different on two branches: no turn of it falls into the limits by chance."""
+    robot = machine.changed(check_limits=False)
+    for axes in poses(machine, 7):
+        position, rotation = (part[0] for part in machine.closure.poses(axes[None]))
+        found = [np.array(s.axes) for s in robot.inverse_all((position, rotation), axes) if s.axes is not None]
+        for other in found:
+            if 5.0 < abs(axes[bent] - other[bent]) / 2 < 50.0 and abs(axes[bent] + other[bent]) / 2 < 100.0:
+                yield axes, other

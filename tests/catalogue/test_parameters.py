@@ -1,0 +1,134 @@
+"""Machines that cannot be: one clear message that names the parameter, and no robot."""
+
+from __future__ import annotations
+
+from math import inf, nan
+
+import pytest
+import softkin
+from softkin import KinematicsError, Status
+
+from derive.description.mechanism import Mechanism, Role
+from tests.catalogue.machines import LENGTHS, Machine
+
+
+def refused(machine: Machine, name: str, **given: object) -> None:
+    with pytest.raises(KinematicsError) as error:
+        machine.changed(**given)
+    message = str(error.value)
+    assert error.value.status is Status.NOT_INITIALIZED
+    assert machine.mechanism.name in message
+    assert name in message
+    assert "\n" not in message
+
+
+def test_every_number_must_be_one(machines: tuple[Machine, ...]) -> None:
+    for parameter in machines[1].robot.PARAMETERS:
+        for value in (nan, inf, -inf, 1e300, -1e300, "5", None, [5.0], 5j):
+            refused(machines[1], parameter.name, **{parameter.name: value})
+
+
+@pytest.mark.serial
+def test_ranges(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """Just inside is accepted, just outside refused: the ends belong to the range, but no length is zero."""
+    machine = machines[0]
+    for parameter in mechanism.parameters:
+        if parameter.role in (Role.FLAG, Role.SIGN):
+            continue
+        step = 1e-3 if parameter.role is not Role.LENGTH else 1e-9
+        high = min(parameter.high, 1e9)
+        machine.changed(**{parameter.name: high})
+        refused(machine, parameter.name, **{parameter.name: high + max(step, high * 1e-9)})
+        refused(machine, parameter.name, **{parameter.name: parameter.low - step})
+        if parameter.low_open:
+            refused(machine, parameter.name, **{parameter.name: parameter.low})
+            machine.changed(**{parameter.name: parameter.low + step})
+        elif parameter.role is Role.SIGNED_LENGTH:
+            refused(machine, parameter.name, **{parameter.name: 0.0})
+            machine.changed(**{parameter.name: parameter.low})
+        else:
+            machine.changed(**{parameter.name: parameter.low})
+
+
+def test_ranges_of_the_vendor() -> None:
+    """The numbers of the SF512x manual."""
+    limits = {"link_length_1": (1e-9, 800), "link_length_2": (1e-9, 800), "pitch_zc": (-200, 200)}
+    limits |= {"offset_a1": (-360, 360), "offset_a2": (-360, 360), "offset_a3": (-400, 400), "offset_a4": (-720, 720)}
+    lengths = {"link_length_1": 325.0, "link_length_2": 225.0}
+    for name, ends in limits.items():
+        for end, outward in zip(ends, (-1, 1), strict=True):
+            softkin.Scara4ZCcoupledType1(**{**lengths, name: end})
+            with pytest.raises(KinematicsError, match=name):
+                softkin.Scara4ZCcoupledType1(**{**lengths, name: end + outward * 1e-6})
+    for axis, end in (("a1", 360), ("a2", 360), ("a3", 400), ("a4", 720)):
+        softkin.Scara4ZCcoupledType1(**lengths, **{f"lower_{axis}": -end, f"upper_{axis}": end})
+        with pytest.raises(KinematicsError, match=f"upper_{axis}"):
+            softkin.Scara4ZCcoupledType1(**lengths, **{f"lower_{axis}": -end, f"upper_{axis}": end + 0.001})
+
+
+def test_lengths_must_be_given_and_nothing_else_need_be(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    robot_class = type(machines[0].robot)
+    lengths = {p.name: p.nominal for p in mechanism.parameters if p.default is None}
+    assert {p.name for p in mechanism.parameters if p.role is Role.LENGTH} <= set(lengths)
+    rails = {p.name: p.nominal for p in mechanism.parameters if p.name.startswith("rail_") and p.default is not None}
+    robot_class(**lengths, **rails)  # rails that are not given all lie on the origin: one or two may, three may not
+    for name in lengths:
+        with pytest.raises(TypeError, match=name):
+            robot_class(**{k: v for k, v in lengths.items() if k != name})
+    with pytest.raises(TypeError):
+        robot_class(**lengths, no_such_parameter=1.0)
+    with pytest.raises(TypeError):
+        robot_class(325.0, 225.0)
+
+
+def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    robot = machines[0].robot
+    for parameter in robot.PARAMETERS:
+        expected = machines[0].given.get(parameter.name, parameter.default)
+        assert robot.parameters[parameter.name] == expected
+        own = next((p for p in mechanism.parameters if p.name == parameter.name), None)
+        usual = {"check_limits": 1.0, "min_type2_margin": 1e-3}.get(parameter.name, 0.0)
+        by_role = {**dict.fromkeys((*LENGTHS, Role.ANGLE)), Role.SIGN: 1.0}
+        assert parameter.default == (usual if own is None else by_role.get(own.role, 0.0))
+
+
+def test_limits_must_be_in_order(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    names = [j.key for j in mechanism.joints] + [q.name for q in mechanism.limited]
+    for name in names:
+        lower, upper = f"lower_{name}", f"upper_{name}"
+        for low, high in ((10.0, 10.0), (10.0, -10.0), (0.0, -5.0), (5.0, 0.0), (10.0, 10.0 - 1e-9)):
+            refused(machines[0], lower, **{lower: low, upper: high})
+        machines[0].changed(**{lower: 0.0, upper: 0.0})
+        machines[0].changed(**{lower: -5.0, upper: 0.0})
+        machines[0].changed(**{lower: 0.0, upper: 5.0})
+
+
+def test_signs_and_flags(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    kinds = {p.name: p.kind for p in machines[0].robot.PARAMETERS}
+    for name, kind in kinds.items():
+        good = {"sign": (1, -1, 1.0), "flag": (True, False, 0, 1, 1.0)}.get(kind, ())
+        wrong = {"sign": (0, 2, -2, 0.5, 1.0000001), "flag": (2, -1, 0.5, "yes")}.get(kind, ())
+        for value in good:
+            assert machines[0].changed(**{name: value}).parameters[name] == value
+        for value in wrong:
+            refused(machines[0], name, **{name: value})
+
+
+@pytest.mark.serial
+def test_a_coupling_is_given_once(machines: tuple[Machine, ...]) -> None:
+    for machine in machines:
+        for constraint in machine.mechanism.constraints:
+            names = sorted(s.name for s in constraint.condition.free_symbols)
+            assert names == ["gear_coupling", "pitch_zc"]
+            machine.changed(pitch_zc=20.0, gear_coupling=0.0)
+            machine.changed(pitch_zc=0.0, gear_coupling=0.1)
+            refused(machine, "gear_coupling", pitch_zc=20.0, gear_coupling=0.1)
+
+
+def test_a_robot_does_not_change(machines: tuple[Machine, ...]) -> None:
+    robot = machines[1].robot
+    with pytest.raises(TypeError):
+        robot.parameters["check_limits"] = 0.0  # type: ignore[index]
+    with pytest.raises(AttributeError):
+        robot.something = 1.0  # type: ignore[attr-defined]
+    assert eval(repr(robot), vars(softkin) | {type(robot).__name__: type(robot)}).parameters == robot.parameters

@@ -1,0 +1,117 @@
+"""Ten thousand small steps, each with the last result as reference: continuous until a status, never a jump."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+import softkin
+from softkin import KinematicsError, Status
+
+from derive.description.mechanism import Mechanism
+from tests.catalogue.closure import Array
+from tests.catalogue.machines import Machine
+from tests.catalogue.paths import straight, tour
+
+pytestmark = pytest.mark.serial
+
+STEPS = 10_000
+TOLERANCE = 1e-8
+"""Degrees or lengths: the way is regular, and errors do not add up."""
+
+
+def follow(
+    robot: softkin.Mechanism, machine: Machine, axes: Array, branches: tuple[int, ...] | None = None
+) -> Iterator[tuple[int, Array | None]]:
+    """Every step's result: axis values, or None where it was refused. The reference is the last result.
+
+    Branches are those of the first pose, where they are not given.
+    """
+    if branches is None:
+        branches = robot.forward(axes[0])[1][: robot.BRANCHES]
+    positions, rotations = machine.closure.poses(axes)
+    frames = list(zip(positions.tolist(), rotations.tolist(), strict=True))
+    configuration = branches + (0,) * len(robot.PERIOD_AXES)
+    last = tuple(axes[0])
+    for k, frame in enumerate(frames):
+        try:
+            last = robot.inverse(frame, configuration, last)
+        except KinematicsError as error:
+            assert error.status is Status.UNREACHABLE
+            yield k, None
+        else:
+            yield k, np.array(last)
+
+
+def chosen(machines: tuple[Machine, ...], label: str) -> Machine:
+    (found,) = (m for m in machines if m.label == label)
+    return found
+
+
+def test_many_turns(machines: tuple[Machine, ...]) -> None:
+    """Across every ±180 degrees, forward and back, turns counted; with branches named."""
+    machine = chosen(machines, "random 1")
+    axes = tour(machine, STEPS)
+    for k, found in follow(machine.robot, machine, axes):
+        assert found is not None
+        assert np.abs(found - axes[k]).max() < TOLERANCE
+    turning = [i for i, j in enumerate(machine.mechanism.joints) if j.multi_turn]
+    periods = machine.robot.forward_batch(axes)[2][:, machine.robot.BRANCHES :]
+    assert all(np.ptp(axes[:, i]) > 1000.0 for i in turning) or machine.robot.BRANCHES
+    assert (np.ptp(periods, axis=0) >= 1).sum() >= len(turning) - machine.robot.BRANCHES
+
+
+def test_an_automatic_branch_stays_on_a_regular_way(machines: tuple[Machine, ...]) -> None:
+    for machine in machines:
+        axes = tour(machine, 1200, turns=-1)
+        for k, found in follow(machine.robot, machine, axes, (0,) * machine.robot.BRANCHES):
+            assert found is not None
+            assert np.abs(found - axes[k]).max() < TOLERANCE
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize("width", [60.0, 340.0, 359.0, 361.0, 800.0])
+def test_through_a_limit(mechanism: Mechanism, machines: tuple[Machine, ...], width: float, direction: int) -> None:
+    """Every axis out of either end: the first step outside is refused, and no later answer is outside.
+
+    A step is 0.8.
+    """
+    machine = chosen(machines, "nominal")
+    for i, joint in enumerate(mechanism.joints):
+        axes = straight(machine, i, 500, far=400.0 * direction)
+        end = float(axes[len(axes) // 10, i]) + 1e-4 * direction
+        low, high = joint.limit_range or (-1e9, 1e9)
+        lower, upper = sorted((end, min(max(end - width * direction, low), high)))
+        robot = machine.changed(**{f"lower_{joint.key}": lower, f"upper_{joint.key}": upper})
+        assert (lower <= axes[0, i] <= upper) and not (lower - 10.0 <= axes[-1, i] <= upper + 10.0)
+        refused = False
+        for k, found in follow(robot, machine, axes):
+            if not refused:
+                inside = lower <= axes[k, i] <= upper
+                assert (found is not None) == inside
+                refused = not inside
+                if inside:
+                    assert np.abs(found - axes[k]).max() < TOLERANCE
+            elif found is not None:  # a turn back it is inside again
+                assert joint.multi_turn
+                assert lower - 1e-6 <= found[i] <= upper + 1e-6
+                assert abs(found[i] - axes[k, i] + 360.0 * direction) < TOLERANCE
+        assert refused
+
+
+def test_a_range_of_exactly_one_turn(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """Limits of ±180 leave no gap: the path is refused where it leaves them, until its other end is nearer to the last answer."""
+    machine = chosen(machines, "nominal")
+    for i, joint in enumerate(mechanism.joints):
+        if not joint.multi_turn or joint.coupling != 0:
+            continue
+        robot = machine.changed(**{f"lower_{joint.key}": -180.0, f"upper_{joint.key}": 180.0})
+        axes = straight(machine, i, 500)
+        last = axes[0, i]
+        for k, found in follow(robot, machine, axes):
+            turns = 0.0 if axes[k, i] < last + 180.0 else 360.0
+            assert (found is None) == (axes[k, i] - turns > 180.0)
+            if found is not None:
+                assert abs(found[i] - (axes[k, i] - turns)) < TOLERANCE
+                last = axes[k, i] - turns

@@ -1,0 +1,95 @@
+"""Inverse of forward, and forward of inverse: on every branch, over several turns."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+from softkin import Status
+
+from tests.catalogue.closure import Array
+from tests.catalogue.machines import Machine
+
+POSES = 500
+AXES = 1e-9
+"""Degrees or lengths: how well axis values are found again at a regular pose."""
+FRAME = 1e-12
+
+
+def slots(machine: Machine) -> list[tuple[int, ...]]:
+    """The branch bytes of every slot, the first byte fastest."""
+    return [bytes_[::-1] for bytes_ in product((1, 2), repeat=machine.robot.BRANCHES)]
+
+
+def strangers(machine: Machine, axes: Array) -> Array:
+    """References that have nothing to do with the axes."""
+    return np.random.default_rng(99).uniform(-900, 900, axes.shape)
+
+
+def test_the_configuration_selects_the_same_axes(machines: tuple[Machine, ...]) -> None:
+    """With every branch and period named, whatever the reference is."""
+    for machine in machines:
+        axes = machine.draw(POSES, np.random.default_rng(1))
+        frames = machine.closure.poses(axes)
+        _, _, configurations, _ = machine.robot.forward_batch(axes)
+        found, statuses = machine.robot.inverse_batch(*frames, configurations, strangers(machine, axes))
+        assert (statuses == Status.OK).all()
+        assert np.abs(found - axes).max() < AXES
+
+
+def test_open_periods_are_found_by_the_reference(machines: tuple[Machine, ...]) -> None:
+    """Joint by joint, so that a coupled axis is not drawn to another turn."""
+    for machine in machines:
+        axes = machine.draw(POSES, np.random.default_rng(2))
+        frames = machine.closure.poses(axes)
+        _, _, configurations, _ = machine.robot.forward_batch(axes)
+        configurations[:, machine.robot.BRANCHES :] = 0
+        jitter = np.random.default_rng(3).uniform(-2.9, 2.9, axes.shape)
+        references = machine.closure.axes(machine.closure.joints(axes) + np.where(machine.closure.angles, jitter, 0.0))
+        found, statuses = machine.robot.inverse_batch(*frames, configurations, references)
+        assert (statuses == Status.OK).all()
+        assert np.abs(found - axes).max() < AXES
+
+
+def test_every_slot_satisfies_the_closure(machines: tuple[Machine, ...]) -> None:
+    for machine in machines:
+        axes = machine.draw(POSES, np.random.default_rng(4))
+        frames = machine.closure.poses(axes)
+        answers = np.zeros(len(axes), dtype=int)
+        for slot in slots(machine):
+            configuration = slot + (0,) * len(machine.robot.PERIOD_AXES)
+            found, statuses = machine.robot.inverse_batch(*frames, configuration, axes * 0.01)
+            answered = machine.answers(statuses)
+            answers += answered
+            found = found[answered]
+            assert machine.miss(found, *(f[answered] for f in frames)).max(initial=0.0) < FRAME
+            written = machine.robot.forward_batch(found)[2]
+            assert (written[:, : len(slot)] == slot).all()
+        assert (answers >= 1).all()
+        assert answers.max() == 2**machine.robot.BRANCHES or machine.mechanism.rods
+
+
+def test_inverse_all_holds_every_branch_in_its_slot(machines: tuple[Machine, ...]) -> None:
+    for machine in machines:
+        robot = machine.changed(check_limits=False)  # near the end of an axis the other branch may be beyond it
+        axes = machine.draw(20, np.random.default_rng(5))
+        for values, position, rotation in zip(axes, *machine.closure.poses(axes), strict=True):
+            found = robot.inverse_all((position, rotation), values)
+            assert [s.configuration[: robot.BRANCHES] for s in found] == slots(machine)
+            answered = [s for s, ok in zip(found, machine.answers(np.array([s.status for s in found])), strict=True) if ok]
+            for solution in answered:
+                assert solution.axes is not None
+                again = robot.inverse((position, rotation), solution.configuration, strangers(machine, values))
+                assert np.abs(np.subtract(again, solution.axes)).max() < AXES
+            assert min(np.abs(np.subtract(s.axes, values)).max() for s in answered) < AXES
+
+
+def test_a_scalar_inverse_is_the_batch_inverse(machines: tuple[Machine, ...]) -> None:
+    for machine in machines:
+        axes = machine.draw(50, np.random.default_rng(6))
+        positions, rotations = machine.closure.poses(axes)
+        _, _, configurations, _ = machine.robot.forward_batch(axes)
+        found, _ = machine.robot.inverse_batch(positions, rotations, configurations, axes)
+        for row in range(len(axes)):
+            scalar = machine.robot.inverse((positions[row], rotations[row]), configurations[row].tolist(), axes[row])
+            assert np.abs(np.subtract(scalar, found[row])).max() < 1e-11

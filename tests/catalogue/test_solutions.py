@@ -1,0 +1,55 @@
+"""The slots hold all solutions: as many as a search over the whole joint space finds, and the same ones."""
+
+from __future__ import annotations
+
+import numpy as np
+from softkin import Status
+
+from tests.catalogue.closure import Array
+from tests.catalogue.machines import Machine
+from tests.catalogue.roots import SAME, distance, principal, solutions
+
+POSES = 2
+
+
+def compare(machine: Machine, position: Array, rotation: Array) -> int:
+    """Hold the slots of a pose against the roots of the closure; how many there are."""
+    roots = solutions(machine, position, rotation)
+    robot = machine.changed(min_type2_margin=0.0) if machine.mechanism.rods else machine.robot
+    found = robot.inverse_all((position, rotation))
+    slots = [s.axes for s in found if s.status is Status.OK]
+    assert len(slots) == len(roots)
+    assert all(s.status in (Status.OK, Status.UNREACHABLE) for s in found)
+    if roots:
+        joints = principal(machine, machine.closure.joints(np.array(slots)), position, rotation)
+        for root in roots:
+            assert min(np.abs(distance(machine, root, other)).max() for other in joints) < SAME
+    return len(roots)
+
+
+def test_the_slots_are_the_roots_of_the_closure(machines: tuple[Machine, ...]) -> None:
+    counts = set()
+    for machine in machines:
+        axes = machine.draw(POSES, np.random.default_rng(31))
+        for position, rotation in zip(*machine.closure.poses(axes), strict=True):
+            counts.add(compare(machine, position, rotation))
+    most = 2 ** machines[0].robot.BRANCHES
+    assert min(counts) >= 1
+    assert max(counts) == most or machines[0].mechanism.rods
+    assert counts == {most} or not machines[0].branches_meet_together
+
+
+def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, ...]) -> None:
+    """Positions from the middle of the machine to twice its reach: two branches of a serial one answer together, or none."""
+    counts = set()
+    for machine in machines[::2]:
+        axes = machine.draw(3, np.random.default_rng(32))
+        scales = (0.05, 0.6, 2.2)
+        for position, rotation, scale in zip(*machine.closure.poses(axes), scales, strict=True):
+            counts.add(compare(machine, scale * position, rotation))
+    most = 2 ** machines[0].robot.BRANCHES
+    if machines[0].branches_meet_together:
+        assert counts == ({0, most} if machines[0].has_a_reach else {most})
+    else:
+        assert 0 in counts
+        assert counts <= set(range(0, most + 1, 1 if machines[0].mechanism.rods else 2))

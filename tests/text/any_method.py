@@ -1,0 +1,91 @@
+"""Any method of a block, called with arguments that fit a pose, without knowing what it does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from tests.harness.instance import Entry
+from tests.text import values
+from tests.text.controller import OK, Controller
+from tests.text.samples import Sample
+from tests.text.settings import settings
+from tests.text.twins import Twins
+
+
+@dataclass(frozen=True)
+class Call:
+    """A method with its arguments."""
+
+    controller: Controller
+    method: str
+    arguments: Mapping[str, Any]
+    written: tuple[str, ...]
+    """The arguments that the method writes; all others are its inputs."""
+    has_status: bool
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The arguments that the method reads only."""
+        return tuple(name for name in self.arguments if name not in self.written)
+
+    def run(self) -> tuple[Any, dict[str, Any]]:
+        """What the method returns, and what it has written."""
+        result = self.controller.block.call(self.method, **self.arguments)
+        return result, self.state()
+
+    def state(self) -> dict[str, Any]:
+        """What the arguments hold that the method writes."""
+        return {name: values.plain(self.arguments[name]) for name in self.written}
+
+    def is_refused(self, result: Any) -> bool:
+        """Whether a result says that nothing was done."""
+        return self.has_status and result != OK
+
+
+def methods_of(controller: Controller) -> list[str]:
+    """The public methods of a block, but for Initialize."""
+    block = controller.library.objects[controller.mechanism.block_name]
+    return [method.name for method in block.methods if method.access != "PRIVATE" and method.name != "Initialize"]
+
+
+def call_of(twins: Twins, controller: Controller, method: str, sample: Sample) -> Call:
+    """A method with arguments that fit a pose; what it writes holds what means nothing."""
+    entry: Entry = controller.block.routines[method.lower()]
+    given = _fitting(twins, sample)
+    arguments, written = {}, []
+    for parameter, make in zip(entry.routine.parameters, entry.defaults, strict=True):
+        if parameter.scope == "VAR_OUTPUT":
+            continue
+        if parameter.is_reference and not parameter.constant:
+            arguments[parameter.name] = values.filled(make())
+            written.append(parameter.name)
+        else:
+            arguments[parameter.name] = given[parameter.name]
+    returns = entry.routine.declaration.returns
+    has_status = returns is not None and returns.text.endswith("SMC_ERROR")
+    return Call(controller, method, arguments, tuple(written), has_status)
+
+
+def _fitting(twins: Twins, sample: Sample) -> dict[str, Any]:
+    """An argument for every input in the contract, by its name."""
+    library = twins.library
+    position, rotation, data = twins.controller.forward(sample.axes)[1]
+    size = len(twins.robot.CONFIGURATION)
+    axes, vector = values.axes(library, sample.axes), values.vector(library, position)
+    configuration = values.configuration(library, data[:size])
+    return {
+        "a": axes,
+        "aRef": axes,
+        "f": values.frame(library, position, rotation),
+        "mR_Flange": values.matrix(library, rotation),
+        "v_MCS": vector,
+        "vOffset_TCP": values.vector(library, (0.0, 0.0, 0.0)),
+        "cd": configuration,
+        "cd1": configuration,
+        "cd2": configuration,
+        "cdSrc": configuration,
+        "as": settings(library, None),
+        "udiAxis": 0,
+    }

@@ -1,0 +1,127 @@
+"""Ways to break a unit: what stands in the text of a method, and what is put there instead."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from derive.description.mechanism import Mechanism
+from tests.text.twins import MECHANISMS
+from tests.text.units import file_of, shared_texts, text_of
+
+(MECHANISM,) = (m for m in MECHANISMS if m.name == "Kin_Scara4_ZCcoupled_Type1")
+
+
+@dataclass(frozen=True)
+class Break:
+    """A change to the first place behind the declaration of a method, a block or a shared function."""
+
+    where: str
+    right: str
+    wrong: str
+    said: str = ""
+    """What the harness must say; nothing where a comparison must fail."""
+
+
+def texts(change: Break | None = None, mechanism: Mechanism = MECHANISM) -> Mapping[str, str]:
+    """The unit of a mechanism and the shared objects, with a change to one of them."""
+    found = {**shared_texts(), file_of(mechanism): text_of(mechanism)}
+    if change is not None:
+        (file,) = [file for file, text in found.items() if change.where in text and f"{change.where}\n" in declared(text)]
+        start = found[file].index(change.where)
+        head, rest = found[file][:start], found[file][start:]
+        assert change.right in rest, change
+        found[file] = head + rest.replace(change.right, change.wrong, 1)
+    return found
+
+
+def declared(text: str) -> str:
+    """The lines that declare something, cut behind the name."""
+    words = ("METHOD ", "FUNCTION", "PROPERTY ")
+    lines = [line for line in text.split("\n") if line.startswith(words)]
+    return "\n".join(line.split(" :")[0].removesuffix(" IMPLEMENTS") for line in lines) + "\n"
+
+
+_BLOCK = f"FUNCTION_BLOCK {MECHANISM.block_name}"
+_INITIALIZE, _FORWARD = "METHOD PUBLIC Initialize", "METHOD PUBLIC AxesToCartesian"
+_INVERSE, _BRANCH, _LIMITS = "METHOD PUBLIC CartesianToAxes", "METHOD PRIVATE SolveBranch", "METHOD PRIVATE TestLimits"
+_SINGULAR, _JACOBIAN = "METHOD PUBLIC IsSingularity", "METHOD PUBLIC Jacobian"
+
+REFUSED = {
+    "a missing semicolon": Break("METHOD PUBLIC IsInitialized", ":= initialized;", ":= initialized", "missing ';'"),
+    "a missing END_IF": Break(_SINGULAR, "  RETURN;\nEND_IF", "  RETURN;", "END_IF"),
+    "an undeclared name": Break(_BRANCH, "reach := ", "reached := ", "undeclared name reached"),
+    "an undeclared function": Break(_BRANCH, "Softkin_Root", "Softkin_Sqrt", "undeclared function Softkin_Sqrt"),
+    "a wrong type": Break(_INITIALIZE, ":= xCheckLimits;", ":= dLinkLength1;", "LREAL does not fit BOOL"),
+    "a wrong type of a number": Break(_INVERSE, "slot MOD 2 + 1", "1.0", "LREAL does not fit INT"),
+    "a wrong argument": Break(_FORWARD, "aElements := rot", "aElements := f", "not a SMC_Frame"),
+    "a write to a constant input": Break(_FORWARD, "f.vT.dX := x;", "a.a0 := x;", "VAR_IN_OUT CONSTANT a"),
+    "a constant input that is handed on": Break(
+        _BRANCH,
+        "a.a0 := axisA1;",
+        "Softkin_ReadMatrix(m := f.mR, aElements := rot, eOrder := matrixOrder);",
+        "VAR_IN_OUT CONSTANT rot",
+    ),
+    "a write outside Initialize": Break(_SINGULAR, "sinA2 := ", "machineScale := ", "Initialize"),
+    "a write to an input of the block": Break(_FORWARD, "f.vT.dX := x;", "dLinkLength1 := x;", "writes the input dLinkLength1"),
+    "a missing method": Break(_BLOCK, "PUBLIC IsConfigSingular", "PUBLIC Other", "IsConfigSingular"),
+    "a missing property": Break("PROPERTY PUBLIC NumAxes", "NumAxes", "Axes", "NumAxes"),
+    "parameters in another order": Break(
+        "METHOD PUBLIC CPConnectible", "  cd1 : TRAFO.CONFIGDATA;\n  cd2", "  cd2 : TRAFO.CONFIGDATA;\n  cd1", "cd1"
+    ),
+    "a parameter of another scope": Break(_SINGULAR, "VAR_IN_OUT CONSTANT", "VAR_IN_OUT", "VAR_IN_OUT CONSTANT"),
+    "a parameter of another type": Break("METHOD PUBLIC GetAxisProperties", "udiAxis : UDINT", "udiAxis : UINT", "UDINT"),
+    "a result that is never given": Break("METHOD PUBLIC GetKinematicsName", "GetKinematicsName := ", "// ", "never assigns"),
+    "the same name twice": Break(_FORWARD, "  x : LREAL;", "  x : LREAL;\n  X : LREAL;", "duplicate name"),
+    "a name of a method": Break(_BRANCH, "  reach : LREAL;", "  jacobian : LREAL;", "hides a member"),
+    "an error that does not exist": Break(_FORWARD, "SMC_TRAFO_NOT_INITIALIZED", "SMC_FINE", "no member"),
+    "an axis that does not exist": Break(_BRANCH, "a.a5 := 0.0;", "a.a6 := 0.0;", "no field a6"),
+    "a byte that does not exist": Break(_FORWARD, "abyData[3]", "abyData[32]", "outside"),
+    "a division of integers": Break(_BRANCH, "headingAlong := ", "headingAlong := 1/2 + ", "not allowed"),
+}
+
+FAULTS = {
+    "a division by zero": Break(_BRANCH, "angleA1/DEGREE", "angleA1/0.0", "division by zero"),
+    "a root of a negative": Break(_BRANCH, "reach := Softkin_Root(", "reach := SQRT(-1.0E12 + ", "SQRT of a negative"),
+    "a product that overflows": Break(_FORWARD, "cosA1 := COS(a1)", "cosA1 := 1.0E200*COS(a1)*1.0E200", "not finite"),
+    "an unused axis that is read": Break(_FORWARD, "a.a2 - offsetA3", "a.a2 - a.a4", "not finite"),
+    "an integer that overflows": Break(_INVERSE, ":= slot MOD 2 + 1", ":= slot + 32767", "overflow"),
+    "numbers that are not checked": Break("FUNCTION Softkin_IsNumber", ":= (", ":= TRUE OR (", "not finite"),
+}
+
+WRONG = {
+    "CartesianToAxes: a sign": Break(_BRANCH, "f.vT.dY - armAcrossA1*f.vT.dX", "f.vT.dY + armAcrossA1*f.vT.dX"),
+    "AxesToCartesian: a sign": Break(_FORWARD, "z := a3 - ", "z := a3 + "),
+    "CartesianToAxes: an offset": Break(_BRANCH, "axisA3 := a3 + offsetA3;", "axisA3 := a3;"),
+    "CartesianToAxes: two axes exchanged": Break(_BRANCH, "a.a0 := axisA1;\na.a1 := axisA2;", "a.a0 := axisA2;\na.a1 := axisA1;"),
+    "CartesianToAxes: an unused axis": Break(_BRANCH, "a.a5 := 0.0;", "a.a5 := 1.0;"),
+    "AxesToCartesian: two bytes exchanged": Break(_FORWARD, "Softkin_PeriodNumber(a.a3)", "Softkin_PeriodNumber(a.a1)"),
+    "AxesToCartesian: a byte without a meaning": Break(_FORWARD, "cd := ", "configuration.abyData[30] := 7;\ncd := "),
+    "CartesianToAxes: a tie": Break(_INVERSE, "least - 1.0E-6", "least + 1.0E6"),
+    "CartesianToAxes: a tolerance": Break(_BRANCH, ">= -1.0E-12", ">= 0.01"),
+    "CartesianToAxes: an error": Break(_BRANCH, "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS", "SMC_TRAFO_INVALID_COUPLING"),
+    "CartesianToAxes: a limit": Break(_LIMITS, "(a.a3 <= highestA4)", "(a.a3 <= 2.0*highestA4)"),
+    "CartesianToAxes: an output before a refusal": Break(
+        _INVERSE, "status := TestLimits(", "a := solution;\nstatus := TestLimits("
+    ),
+    "CartesianToAxes: a turn": Break(_BRANCH, "360.0*turnA4 - 360.0", "360.0*turnA4"),
+    "CartesianToAxes: byte 3": Break("FUNCTION Softkin_AdmitsBranch", "(byConfigured = 3)", "(byConfigured = 7)"),
+    "Jacobian: a column": Break(_JACOBIAN, "J[3, 3] := 1.0;", "J[3, 3] := 0.0;"),
+    "Jacobian: an element outside": Break(_JACOBIAN, "J[row, column] := 0.0;", "J[row, 0] := 0.0;"),
+    "AxesToOrientation: an element": Break("METHOD PUBLIC AxesToOrientation", "rot[2, 1] := sinA124", "rot[2, 1] := cosA124"),
+    "IsSingularity: a threshold": Break(_SINGULAR, "< 0.001", "< 0.9"),
+    "GetAxisProperties: a type": Break("METHOD PUBLIC GetAxisProperties", "Axis_Type.Rotary", "Axis_Type.Linear"),
+    "GetOrientationImage: a freedom": Break("METHOD PUBLIC GetOrientationImage", "OrientationDOF.one", "OrientationDOF.zero"),
+    "GetFlangeOrientationImageWithOri: an axis": Break(
+        "METHOD PUBLIC GetFlangeOrientationImageWithOri", "vRot.dZ := projected[3, 3]", "vRot.dZ := projected[1, 1]"
+    ),
+    "AxesToConfiguration_Offset: a sign": Break("METHOD PUBLIC AxesToConfiguration_Offset", "toolX*sinA2", "toolY*sinA2"),
+    "CartesianToAxes_Offset: a sign": Break("METHOD PRIVATE SolveOffsetBranch", "v_MCS.dZ - toolZ", "v_MCS.dZ + toolZ"),
+    "GetKinematicsName: a name": Break("METHOD PUBLIC GetKinematicsName", "'Kin_Scara4_ZCcoupled'", "'Kin_Scara4'"),
+    "GetPeriods: an axis": Break("METHOD PUBLIC GetPeriods", "aPeriods[3]", "aPeriods[2]"),
+    "CPConnectible: anything": Break("METHOD PUBLIC CPConnectible", "CPConnectible := (", "CPConnectible := TRUE OR ("),
+    "CartesianToAxes: a constant of the machine": Break(
+        _INITIALIZE, "linkLength2 := dLinkLength2;", "linkLength2 := 1.01*dLinkLength2;"
+    ),
+}
+"""The method that then answers otherwise, and what is wrong."""

@@ -1,0 +1,251 @@
+"""Every method of the emitted orientation kinematics is executed, in both orders of the matrix, and answers as Python does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+from derive.description.mechanism import Mechanism, Turning
+from tests.catalogue.coupling.determined import is_determined
+from tests.catalogue.coupling.parts import EVERYTHING, position_part
+from tests.harness.instance import Entry
+from tests.text import values
+from tests.text.closeness import asked, assert_same, is_close
+from tests.text.comparisons import COMPARISONS as COMMON
+from tests.text.comparisons import initialize
+from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE
+from tests.text.coupling.blocks import IDENTITY, ORIENTATIONS, Image, Twins, twins_of
+from tests.text.samples import HALF_TURN, Rows, Sample, tilted
+from tests.text.units import compiled
+
+INVALID = "SMC_TRAFO_INVALID_COUPLING"
+GARBAGE = (math.nan, math.inf, -math.inf, 1e300, 1.1e9)
+SKEWED: Rows = ((1.0, 0.01, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+CARRIERS = {"zero": "Kin_Gantry3", "one": "Kin_Scara2_Z", "three": "Kin_Pos_RRR"}
+ORDERS = ("rows", "columns")
+
+
+def rows_of(matrix: np.ndarray) -> Rows:
+    return tuple(tuple(row) for row in matrix.tolist())
+
+
+def images(rng: np.random.Generator) -> Iterator[tuple[Image, Callable[[], np.ndarray]]]:
+    """Images of flanges, and orientations that such a flange has."""
+    still = np.array(tilted(rng))
+    yield Image("zero", rows_of(still)), lambda: still
+    yield Image("one"), lambda: _about(np.array((0.0, 0.0, 1.0)), rng)
+    down = np.diag((1.0, -1.0, -1.0))
+    yield Image("one", rows_of(down), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)), lambda: _about(np.array((0.0, 0.0, 1.0)), rng) @ down
+    base, zero = np.array(tilted(rng))[:, 0], np.array(tilted(rng))
+    yield Image("one", rows_of(zero), tuple(base.tolist()), tuple((zero.T @ base).tolist())), lambda: _about(base, rng) @ zero
+    yield Image("three", rows_of(still)), lambda: np.array(tilted(rng))
+
+
+def _about(axis: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    angle = rng.uniform(-np.pi, np.pi)
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+
+
+def compatible(twins: Twins, sample: Sample) -> None:
+    """As in Python, and as the equations say of a flange of every kind."""
+    rng = np.random.default_rng(31)
+    for image, _ in images(rng):
+        expected = twins.robot.is_compatible(image.in_python())
+        assert twins.controller.is_compatible(image) is expected
+    if sample is twins.regular[0]:
+        for freedom, carrier in CARRIERS.items():
+            assert twins.controller.is_compatible(Image(freedom)) is is_determined(position_part(EVERYTHING[carrier]), twins.part)
+
+
+def end_point(twins: Twins, sample: Sample) -> None:
+    """Where the equations have the end point, with the flange as it is at axis values that give the commanded rotation."""
+    rng = np.random.default_rng(37)
+    place, own = (m[0] for m in twins.part.closure.frames(twins.part.closure.joints(np.array([sample.axes]))))
+    configuration = twins.robot.forward(sample.axes)[1]
+    _, inside = asked(twins.robot.inverse, ((0.0, 0.0, 0.0), rows_of(own)), configuration, sample.axes)
+    for image, flange in images(rng):
+        turned = flange()
+        status, found = twins.controller.end_point(rows_of(turned @ own), image, configuration, sample.axes)
+        if not twins.robot.is_compatible(image.in_python()):
+            assert status == INVALID
+        elif image.freedom == "zero" and inside is None:
+            assert status == UNREACHABLE  # beyond the limits
+        else:
+            assert status == OK and np.abs(np.subtract(found, turned @ place)).max() < 1e-10
+
+
+def end_point_2(twins: Twins, sample: Sample) -> None:
+    rng = np.random.default_rng(41)
+    for image, _ in images(rng):
+        expected = twins.controller.end_point(sample.rotation, image, twins.robot.DEFAULT_CONFIGURATION, (0.0,) * 6)
+        assert_same(twins.controller.end_point_2(sample.rotation, image), expected, twins)
+        assert expected[0] in (OK, INVALID, UNREACHABLE)
+
+
+def end_point_1(twins: Twins, sample: Sample) -> None:
+    """As for a flange that stays parallel to the machine."""
+    status, axes = asked(twins.robot.inverse, ((0.0, 0.0, 0.0), sample.rotation))
+    expected = twins.robot.forward(axes)[0].position if status == OK else None
+    assert_same(twins.controller.end_point_1(sample.rotation), (status, expected), twins, sample)
+
+
+def total(twins: Twins, sample: Sample) -> None:
+    """As in Python; and every orientation of both together is in it."""
+    rng = np.random.default_rng(43)
+    own = twins.part.closure.frames(twins.part.closure.joints(np.array([sample.axes])))[1][0]
+    for image, flange in images(rng):
+        status, (freedom, zero, base, seen) = twins.controller.total(image)
+        assert status == OK
+        expected = twins.robot.image_on(image.in_python())
+        assert freedom == expected.freedom == _expected_freedom(twins.mechanism.task.turning, image)
+        assert_same(zero, expected.rotation, twins)
+        if freedom != "three":
+            assert_same((base, seen), (expected.base_axis, expected.flange_axis), twins)
+        together = flange() @ own
+        if freedom == "one":
+            assert np.abs(together @ seen - base).max() < 1e-12 and np.abs(np.array(zero) @ seen - base).max() < 1e-12
+        elif freedom == "zero":
+            assert np.abs(together - zero).max() < 1e-12
+
+
+def _expected_freedom(turning: Turning, image: Image) -> str:
+    along_z = abs(abs(image.flange_axis[2]) - 1.0) < 1e-9
+    if turning is Turning.NONE:
+        return image.freedom
+    if turning is Turning.ABOUT_Z and (image.freedom == "zero" or (image.freedom == "one" and along_z)):
+        return "one"
+    return "three"
+
+
+def with_orientation(twins: Twins, sample: Sample) -> None:
+    """What is left free once an orientation is programmed, in whose frame, and whether it is chosen here."""
+    turning = twins.mechanism.task.turning
+    direction = tuple(row[2] for row in sample.rotation)
+    z = (0.0, 0.0, 1.0)
+    expected, how = {
+        Turning.NONE: (("zero", IDENTITY, z, z), ("FLANGE", False)),
+        Turning.ABOUT_Z: (("one", IDENTITY, z, z), ("FLANGE", True)),
+        Turning.DIRECTION: (("one", sample.rotation, direction, z), ("MCS", False)),
+        Turning.FULL: (("zero", sample.rotation, direction, z), ("MCS", True)),
+    }[turning]
+    status, image, found = twins.controller.with_orientation(sample.rotation, Image("one"))
+    assert status == OK and is_close(image, expected) and found == how
+    status = twins.controller.with_orientation(SKEWED, Image("one"))[0]
+    assert status == (BAD_INPUT if turning in (Turning.DIRECTION, Turning.FULL) else OK)
+
+
+def initialised(twins: Twins, sample: Sample) -> None:
+    if twins.mechanism.joints:
+        initialize(twins, sample)
+    else:
+        assert twins.controller.block.call("IsInitialized") and twins.controller.block.call("Initialize") == OK
+
+
+COMPARISONS = COMMON | {
+    "Initialize": initialised,
+    "IsInitialized": initialised,
+    "IsCompatibleWithPosKin": compatible,
+    "GetPositionFromOrientation3": end_point,
+    "GetPositionFromOrientation2": end_point_2,
+    "GetPositionFromOrientation": end_point_1,
+    "GetOrientationImageTotal": total,
+    "GetOrientationImageWithOri": with_orientation,
+}
+METHODS = [
+    (mechanism, method.name)
+    for mechanism in ORIENTATIONS
+    for method in compiled(mechanism).objects[mechanism.block_name].methods
+    if method.access != "PRIVATE"
+]
+
+
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
+def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str, order: str) -> None:
+    for twins in twins_of(mechanism, order):
+        for sample in twins.regular:
+            COMPARISONS[method](twins, sample)
+
+
+@pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
+def test_the_number_of_axes(mechanism: Mechanism) -> None:
+    assert twins_of(mechanism)[0].controller.block.get("NumAxes") == len(mechanism.joints)
+
+
+@pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
+def test_the_position_of_a_frame_is_not_read(mechanism: Mechanism) -> None:
+    for twins in twins_of(mechanism):
+        sample = twins.regular[0]
+        (_, rotation), configuration = twins.robot.forward(sample.axes)
+        expected = twins.controller.inverse((0.0, 0.0, 0.0), rotation, configuration, sample.axes)
+        for position in ((math.nan, math.inf, 1e300), (1e9, -5.0, 3.0)):
+            assert twins.controller.inverse(position, rotation, configuration, sample.axes) == expected
+            assert asked(twins.robot.inverse, (position, rotation), configuration, sample.axes) == asked(
+                twins.robot.inverse, ((0.0, 0.0, 0.0), rotation), configuration, sample.axes
+            )
+
+
+@pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
+def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism) -> None:
+    twins = twins_of(mechanism)[0]
+    refuses = mechanism.task.turning is Turning.ABOUT_Z
+    data = twins.robot.DEFAULT_CONFIGURATION
+    status, _ = twins.controller.end_point(HALF_TURN, Image("zero"), data, (0.0,) * 6)
+    assert status == (UNREACHABLE if refuses else OK)
+
+
+@pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
+def test_garbage_and_no_initialisation(mechanism: Mechanism) -> None:
+    """Any scalar of any argument: an answer without a fault, and where it is a refusal nothing is written."""
+    twins = twins_of(mechanism)[0]
+    fresh = compiled(mechanism).new(mechanism.block_name)
+    for method in (m for m in METHODS if m[0] is mechanism and m[1].startswith(("GetPosition", "GetOrientation", "IsComp"))):
+        entry: Entry = twins.controller.block.routines[method[1].lower()]
+        for freedom in CARRIERS:
+            clean = _arguments(twins, entry, freedom)
+            twins.controller.block.call(method[1], **clean)
+            refusal = fresh.call(method[1], **_arguments(twins, entry, freedom))
+            assert refusal in (NOT_INITIALIZED, False)
+            inputs = [p.name for p in entry.routine.parameters if p.constant or not p.is_reference]
+            for name in inputs:
+                for path in values.scalars(clean[name]):
+                    if not path or not isinstance(values.element(clean[name], path), float):
+                        continue
+                    for number in GARBAGE:
+                        _call_with(twins, method[1], entry, freedom, name, path, number)
+
+
+def _call_with(twins: Twins, method: str, entry: Entry, freedom: str, name: str, path: values.Path, number: float) -> None:
+    given = _arguments(twins, entry, freedom)
+    values.put(given[name], path, number)
+    written = [k for k in given if hasattr(given[k], "_copy")]
+    before = {k: values.plain(given[k]) for k in written}
+    status = twins.controller.block.call(method, **given)
+    if status not in (OK, True, False):
+        assert status in (BAD_INPUT, INVALID)
+        after = {k: values.plain(given[k]) for k in written}
+        assert str(after) == str(before)
+
+
+def _arguments(twins: Twins, entry: Entry, freedom: str) -> dict[str, object]:
+    library, sample = twins.library, twins.regular[0]
+    known = {
+        "mR": values.matrix(library, sample.rotation),
+        "mR_flange": values.matrix(library, sample.rotation),
+        "aRef": values.axes(library, sample.axes),
+        "cd": values.configuration(library, twins.robot.DEFAULT_CONFIGURATION),
+        "oriInfoBase": twins.controller.space(Image(freedom)),
+        "v": values.meaningless(library, values.VECTOR_TYPE),
+        "csOriKin": "MCS",
+        "bActive": False,
+    }
+    names = {p.name: p for p in entry.routine.parameters}
+    if "oriInfo" in names:
+        made = twins.controller.space(Image(freedom))
+        known["oriInfo"] = made if names["oriInfo"].constant else values.meaningless(library, values.IMAGE_TYPE)
+    return {name: known[name] for name in names}

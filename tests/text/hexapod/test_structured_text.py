@@ -1,0 +1,227 @@
+"""The function block: every method answers as Python does, to the last digit, and every statement of it runs."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pytest
+import softkin
+from numpy.testing import assert_allclose
+from softkin import Status
+
+from derive.description.mechanism import Role
+from derive.ir.program import Status as Outcome
+from derive.kinematics.parameters import machine_parameters
+from derive.mechanisms.kin_hexapod import MECHANISM
+from tests.catalogue.hexapod import test_refusals
+from tests.catalogue.hexapod.machines import NAMES, Array, Machine, machines, rotation
+from tests.catalogue.hexapod.programs import found_from, without_mode
+from tests.harness.library import Library
+from tests.text.controller import BAD_INPUT, IMPOSSIBLE, NOT_INITIALIZED, OK, UNREACHABLE, Controller
+from tests.text.hexapod.blocks import controller, made
+from tests.text.statements import Statements
+from tests.text.test_every_statement import unreachable
+from tests.text.units import compiled, compiled_text, file_of, text_of
+from tests.text.values import PROPERTIES_TYPE, meaningless
+
+
+def compare(machine: Machine, block: Controller, position: Array, turn: Array) -> None:
+    """All methods at a pose that the inverse accepts."""
+    robot = machine.robot
+    axes = robot.inverse((position, turn))
+    assert block.inverse(position, turn, (), (0.0,) * 6) == (OK, axes)
+    frame, _ = robot.forward(axes)
+    status, pose = block.forward(axes)
+    assert status == OK and pose[:2] == (frame.position, frame.rotation) and not any(pose[2])
+    assert_allclose(frame.position, position, atol=1e-9 * machine.shift)
+    assert block.jacobian(axes) == (OK, robot.jacobian(axes))
+    assert block.is_singular(axes) == robot.singularity(axes).is_singular
+
+
+def compare_some(machine: Machine, block: Controller, count: int = 12) -> None:
+    """The same at poses all over the workspace."""
+    positions, turns = machine.poses(count)
+    for position, turn in zip(positions, turns, strict=True):
+        compare(machine, block, position, turn)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_method_answers_as_python_does(name: str) -> None:
+    compare_some(machines()[name], controller(name), 40)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_python_refuses(name: str) -> None:
+    machine, block = machines()[name], controller(name)
+    positions, turns = machine.poses(30, turn=120.0)
+    axes, status = machine.robot.inverse_batch(positions, turns)
+    assert {Status.OK, Status.UNREACHABLE} == set(status)
+    for i, (position, turn) in enumerate(zip(positions, turns, strict=True)):
+        answer = block.inverse(position, turn, (), (0.0,) * 6)
+        assert answer == ((OK, tuple(axes[i])) if status[i] == Status.OK else (UNREACHABLE, None))
+
+
+def test_blocks_share_nothing() -> None:
+    """Two machines of one library, asked in turns: the private method works for the one that calls it."""
+    library = compiled(MECHANISM)
+    pairs = [(machines()[name], made(machines()[name], library)) for name in ("nominal", "lopsided")]
+    for _ in range(2):
+        for machine, block in pairs:
+            compare_some(machine, block, 3)
+
+
+def test_it_says_what_the_flange_can_do() -> None:
+    block, turn = controller("nominal"), rotation(10.0, -20.0, 30.0)
+    status, (freedom, *_) = block.image("GetFlangeOrientationImageTotal")
+    assert (status, freedom) == (OK, "three")
+    status, (freedom, zero, *_) = block.image_with_orientation(turn)
+    assert (status, freedom) == (OK, "zero")
+    assert_allclose(zero, turn, atol=0.0)
+
+
+def test_nothing_works_before_initialize() -> None:
+    empty, axes = Controller(compiled(MECHANISM), MECHANISM), (650.0,) * 6
+    assert empty.forward(axes) == empty.jacobian(axes) == (NOT_INITIALIZED, None)
+    assert empty.inverse((0.0, 0.0, 600.0), np.eye(3), (), axes) == (NOT_INITIALIZED, None)
+    assert empty.diagnose((0.0, 0.0, 600.0), np.eye(3), (), axes) == ("not initialized", 0.0)
+    assert empty.is_singular(axes)
+    assert empty.image("GetFlangeOrientationImageTotal") == empty.image_with_orientation(np.eye(3)) == (NOT_INITIALIZED, None)
+    assert not empty.block.call("IsInitialized") and controller("nominal").block.call("IsInitialized")
+
+
+def in_the_other_mode() -> tuple[float, ...]:
+    """Lengths for which the search from home ends beyond the singularity, where the machine is not."""
+    machine = machines()["asymmetric"]
+    axes = machine.axes(*machine.poses(3000, turn=100.0))[:300]
+    home = np.tile(machine.home[:3], (300, 1)), np.tile(machine.home_turn, (300, 1, 1))
+    _, anywhere = found_from(without_mode(), machine, axes, *home)
+    refused = machine.robot.forward_batch(axes)[3] == Status.IMPOSSIBLE
+    return tuple(axes[np.flatnonzero(refused & (anywhere == Outcome.OK))[0]])
+
+
+def test_the_other_assembly_mode_is_refused() -> None:
+    """The search finds a pose with these lengths, on the other side; the machine is not there."""
+    machine, axes = machines()["asymmetric"], in_the_other_mode()
+    assert machine.robot.forward_batch([axes])[3] == [Status.IMPOSSIBLE]
+    assert controller("asymmetric").forward(axes) == (IMPOSSIBLE, None)
+
+
+def ending_where_nothing_holds() -> Library:
+    """The unit with a search that ends at a determinant of 0. Where two poses meet, a real one ends at about 1e-6."""
+    written = "\nFindPlatform := SM3_Error.SMC_ERROR.SMC_NO_ERROR;"
+    text = text_of(MECHANISM)
+    assert text.count(written) == 1
+    return compiled_text(file_of(MECHANISM), text.replace(written, "\ndeterminant := 0.0;" + written[1:]))
+
+
+def test_without_control_there_is_no_jacobian() -> None:
+    block, axes = made(machines()["nominal"], ending_where_nothing_holds()), (650.0,) * 6
+    assert block.jacobian(axes) == (IMPOSSIBLE, None)
+    assert block.is_singular(axes)
+
+
+def test_every_statement_runs() -> None:
+    small = compiled(MECHANISM, matrix_size=36)
+    statements = Statements([file_of(MECHANISM)], [compiled(MECHANISM), small, ending_where_nothing_holds()])
+    with statements.watched():
+        for name in ("nominal", "lopsided"):
+            compare_some(machines()[name], controller(name), 2)
+        test_it_says_what_the_flange_can_do()
+        test_nothing_works_before_initialize()
+        test_the_other_assembly_mode_is_refused()
+        test_without_control_there_is_no_jacobian()
+        test_refusals.test_what_is_no_number(np.nan)
+        for turn in (np.eye(3) * 1.1, np.diag((1.0, 1.0, -1.0)), np.eye(3) * np.nan):
+            test_refusals.test_what_is_no_rotation(turn)
+        check_axes()
+        check_initialize(small)
+        check_bounds()
+        assert controller("nominal").forward((1e6,) * 6) == controller("nominal").forward((-1.0,) * 6) == (IMPOSSIBLE, None)
+        assert controller("nominal").jacobian((1e6,) * 6)[0] == IMPOSSIBLE
+    lines = text_of(MECHANISM).split("\n")
+    missing = {place.line for place in statements.left_out()} - unreachable(MECHANISM, lines)
+    assert not (left := [f"{n}: {lines[n - 1]}" for n in sorted(missing) if not lines[n - 1].startswith("FUNCTION_BLOCK")]), left
+
+
+def check_axes() -> None:
+    """Names, numbers, and limits: of every axis, and of one that does not exist."""
+    machine = machines()["asymmetric"]
+    block = made(machine, compiled(MECHANISM), lower_l2=100.0, upper_l2=900.0)
+    for axis in range(7):
+        properties = meaningless(block.library, PROPERTIES_TYPE)
+        block.block.call("GetAxisProperties", props=properties, udiAxis=axis)
+        if axis < 6:
+            limits = (100.0, 900.0) if axis == 1 else (machine.offsets[axis], 1e9 + machine.offsets[axis])
+            found = properties.limits.xUnlimited, properties.limits.dLower, properties.limits.dUpper
+            assert found == (False, *limits)
+    assert block.block.get("NumAxes") == 6 and block.block.call("GetKinematicsName") == "Kin_Hexapod"
+
+
+def check_initialize(small: Library) -> None:
+    """Every parameter alone, limits in the wrong order, machines that cannot work, a matrix of another size."""
+    for name in machine_names():
+        wrong = {**machines()["nominal"].given, name: np.nan}
+        assert Controller(compiled(MECHANISM), MECHANISM).initialise(wrong) == NOT_INITIALIZED, name
+    for k in range(1, 7):
+        wrong = {**machines()["nominal"].given, f"lower_l{k}": 700.0, f"upper_l{k}": 600.0}
+        assert Controller(compiled(MECHANISM), MECHANISM).initialise(wrong) == NOT_INITIALIZED
+    for case in test_refusals.refused_parameters():
+        test_refusals.test_machines_that_cannot_work(case)
+    assert made(machines()["nominal"], compiled(MECHANISM), lower_l1=1.0, upper_l1=1e3).forward((650.0,) * 6)[0] == OK
+    limits = {f"{end}_l{k}": value for k in range(1, 7) for end, value in (("lower", 1.0), ("upper", 1e4))}
+    assert made(machines()["nominal"], compiled(MECHANISM), **limits, max_angle_base_joint=30.0).forward((650.0,) * 6)[0] == OK
+    assert Controller(small, MECHANISM).initialise(machines()["nominal"].given) == NOT_INITIALIZED
+
+
+def machine_names() -> list[str]:
+    """The parameters that are numbers."""
+    return [p.name for p in machine_parameters(MECHANISM) if p.role is not Role.FLAG]
+
+
+def check_bounds() -> None:
+    """Limits, cones, the singularity, and a leg without length refuse in the inverse, and Diagnose names the leg."""
+    machine = machines()["nominal"]
+    pose, reference = (machine.home[:3] + 20.0, machine.home_turn), (0.0,) * 6
+    limits = [{f"lower_l{k}": low, f"upper_l{k}": low + 1.0} for k in range(1, 7) for low in (1.0, 1e4)]
+    for more in (*limits, {"min_type2_margin": 1.0}):
+        block = made(machine, compiled(MECHANISM), **more)
+        assert block.inverse(*pose, (), reference) == (UNREACHABLE, None)
+        reason, missing = block.diagnose(*pose, (), reference)
+        said = "rods_dependent" if "min_type2_margin" in more else next(iter(more)).removeprefix("lower_").upper()
+        assert reason.startswith(f"{said}: ") and missing > 0.0
+    check_cones(machine)
+    unchecked = made(machine, compiled(MECHANISM), **limits[0], check_limits=False)
+    assert unchecked.inverse(*pose, (), reference) == (OK, machine.robot.inverse(pose))
+    for k, on_base in enumerate(machine.base - machine.platform, 1):
+        assert controller("nominal").inverse(on_base, np.eye(3), (), reference) == (UNREACHABLE, None)
+        without = controller("nominal").diagnose(on_base, np.eye(3), (), reference)
+        assert without == (f"leg {k}: without length it has no direction", 0.0)
+    assert controller("nominal").inverse((0.0, 0.0, np.nan), np.eye(3), (), reference) == (BAD_INPUT, None)
+
+
+def check_cones(machine: Machine) -> None:
+    """Every leg leans more than those before it at some place, and a cone between them refuses it alone.
+
+    A platform that keeps its rotation sees the same leans as the base.
+    """
+    rng = np.random.default_rng(5)
+    along = _directions(machine, machine.home[:3])
+    for leg, side in product(range(6), ("base", "plate")):
+        before = lean = 0.0
+        while lean <= before + 0.1:
+            place = machine.home[:3] + rng.uniform(-60.0, 60.0, 3)
+            leans = np.degrees(np.arccos(np.minimum(np.sum(along * _directions(machine, place), axis=1), 1.0)))
+            lean, before = float(leans[leg]), float(leans[:leg].max(initial=0.0))
+        cone = {f"max_angle_{side.replace('plate', 'platform')}_joint": 0.5 * (lean + before)}
+        block, robot = made(machine, compiled(MECHANISM), **cone), softkin.Hexapod(**{**machine.given, **cone})
+        reason, missing = block.diagnose(place, machine.home_turn, (), (0.0,) * 6)
+        assert (reason, pytest.approx(missing, rel=1e-12)) == robot.diagnose((place, machine.home_turn))[1:3]
+        assert reason == f"leg {leg + 1}: its joint on the {side} bends beyond its cone [deg]"
+        assert missing == pytest.approx(0.5 * (lean - before), rel=1e-6)
+
+
+def _directions(machine: Machine, position: Array) -> Array:
+    """Of the legs, with the rotation of the home pose."""
+    spans = machine.spans(position, machine.home_turn)
+    return np.asarray(spans / np.linalg.norm(spans, axis=1)[:, None])

@@ -1,0 +1,156 @@
+"""Machines of every mechanism with rods, as a block and in Python, and poses of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import softkin
+from numpy.random import Generator
+from softkin import KinematicsError, Status
+
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism, Parameter, Role
+from derive.kinematics.parameters import machine_parameters
+from tests.harness.library import Library
+from tests.text.controller import OK, Controller
+from tests.text.samples import Sample, tilted
+from tests.text.units import compiled
+
+LOOPS = tuple(m for _, m in catalogue() if m.rods)
+POSES = 120
+"""Regular poses of one machine."""
+BROKEN = 40
+"""Axis values of one machine, drawn without asking whether the loop closes."""
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A loop with its dimensions, in Python."""
+
+    label: str
+    mechanism: Mechanism
+    given: Mapping[str, float]
+    robot: softkin.Mechanism
+    reach: float
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A machine and its two implementations, with the names that `tests.text.comparisons` reads."""
+
+    machine: Machine
+    controller: Controller
+    regular: tuple[Sample, ...]
+    """At a pose."""
+    any: tuple[Sample, ...]
+    """Anywhere: most of them cannot be assembled."""
+
+    @property
+    def mechanism(self) -> Mechanism:
+        return self.machine.mechanism
+
+    @property
+    def robot(self) -> softkin.Mechanism:
+        return self.machine.robot
+
+    @property
+    def library(self) -> Library:
+        return self.controller.library
+
+    def __str__(self) -> str:
+        return f"{self.mechanism.block_name}, {self.machine.label}: {dict(self.machine.given)}"
+
+
+@cache
+def loops_of(mechanism: Mechanism) -> tuple[Loop, ...]:
+    """Nominal dimensions; others, with offsets and the other assembly mode; the latter with limits."""
+    rng = np.random.default_rng(11)
+    nominal = _loop(_machine(mechanism, "nominal", {p.name: p.nominal for p in mechanism.parameters}), rng)
+    other: Loop | None = None
+    while other is None:
+        other = _possible(mechanism, rng)
+    columns = list(zip(*(sample.axes for sample in other.regular), strict=True))
+    limits = {}
+    for joint, column in zip(mechanism.joints, columns, strict=True):
+        limits |= {f"lower_{joint.key}": float(np.quantile(column, 0.1)), f"upper_{joint.key}": float(np.quantile(column, 0.9))}
+    given = {**other.machine.given, **limits, "check_limits": True}
+    return nominal, other, _loop(_machine(mechanism, "limited", given), rng)
+
+
+def loop_of(mechanism: Mechanism, label: str, given: Mapping[str, float], axes: Iterable[tuple[float, ...]]) -> Loop:
+    """A machine with samples at axis values that are chosen, whatever they are."""
+    machine, rng = _machine(mechanism, label, given), np.random.default_rng(17)
+    controller = Controller(compiled(mechanism), mechanism)
+    assert controller.initialise(machine.robot.parameters) == OK
+    return Loop(machine, controller, tuple(_sample(machine, list(values), rng) for values in axes), ())
+
+
+def _possible(mechanism: Mechanism, rng: Generator) -> Loop | None:
+    given = {p.name: _near(p, rng) for p in mechanism.parameters if p.role is not Role.FLAG}
+    given |= {j.offset.name: float(rng.uniform(-15.0, 15.0)) for j in mechanism.joints}
+    given |= {p.name: True for p in machine_parameters(mechanism) if p.role is Role.FLAG and p.name != "check_limits"}
+    try:
+        machine = _machine(mechanism, "other", given)
+    except KinematicsError:
+        return None  # dimensions that form no machine
+    return _loop(machine, rng)
+
+
+def _near(parameter: Parameter, rng: Generator) -> float:
+    size = 5.0 if parameter.role is Role.ANGLE else 0.12 * abs(parameter.nominal)
+    return float(np.clip(parameter.nominal + rng.uniform(-size, size), parameter.low, parameter.high))
+
+
+def _machine(mechanism: Mechanism, label: str, given: Mapping[str, float]) -> Machine:
+    robot = softkin.catalogue()[mechanism.name](**given)
+    lengths = [abs(robot.parameters[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
+    return Machine(label, mechanism, given, robot, min(sum(lengths), 3000.0))
+
+
+def _loop(machine: Machine, rng: Generator) -> Loop:
+    controller = Controller(compiled(machine.mechanism), machine.mechanism)
+    assert controller.initialise(machine.robot.parameters) == OK
+    drawn = _drawn(machine, 6000, rng)
+    closed = [a for a, s in zip(drawn.tolist(), machine.robot.forward_batch(drawn)[3], strict=True) if s == Status.OK]
+    regular = [a for a in closed if all(abs(m) > 0.01 for m in machine.robot.singularity(tuple(a)).margins.values())]
+    regular = [a for a in regular if _returns(machine, tuple(a))]
+    assert len(regular) >= POSES, f"{machine.mechanism.name} {machine.label}: {len(regular)}"
+    made = [_sample(machine, axes, rng) for axes in (*regular[:POSES], *drawn[:BROKEN].tolist())]
+    return Loop(machine, controller, tuple(made[:POSES]), tuple(made[POSES:]))
+
+
+def _returns(machine: Machine, axes: tuple[float, ...]) -> bool:
+    """Whether the inverse accepts the pose: limits, and the swing of a ball joint, are the inverse's. Not asked without those."""
+    if not machine.mechanism.bounds or machine.label == "limited":
+        return True
+    frame, configuration = machine.robot.forward(axes)
+    try:
+        machine.robot.inverse(frame, configuration, axes)
+    except KinematicsError:
+        return False
+    return True
+
+
+def _drawn(machine: Machine, count: int, rng: Generator) -> np.ndarray:
+    """Axis values all over; those of a hexapod near its home pose, where its assembly mode is."""
+    robot, joints = machine.robot, machine.mechanism.joints
+    offsets = np.array([robot.parameters[j.offset.name] for j in joints])
+    if machine.mechanism.home:
+        near = np.array([j.nominal for j in joints]) + offsets
+        return near + rng.uniform(-120.0, 120.0, (count, len(joints)))
+    sizes = np.array([170.0 if j.is_angle else machine.reach for j in joints])
+    return offsets + rng.uniform(-1.0, 1.0, (count, len(joints))) * sizes
+
+
+def _sample(machine: Machine, axes: list[float], rng: Generator) -> Sample:
+    far = [400.0 if j.is_angle else machine.reach for j in machine.mechanism.joints]
+    return Sample(
+        axes=tuple(axes),
+        reference=tuple((np.array(axes) + rng.uniform(-1.0, 1.0, len(axes)) * far).tolist()),
+        rotation=tilted(rng),
+        offset=tuple((rng.uniform(-0.05, 0.05, 3) * machine.reach).tolist()),
+        data=tuple(rng.integers(0, 256, len(machine.robot.CONFIGURATION)).tolist()),
+    )

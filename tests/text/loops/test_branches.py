@@ -1,0 +1,84 @@
+"""Every combination of branch bytes, open ones and wrong ones among them, at poses and beside them."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from tests.text.closeness import asked, assert_same
+from tests.text.controller import BAD_INPUT, OK, UNREACHABLE
+from tests.text.loops.machines import Loop
+from tests.text.samples import Bytes, Sample
+
+POSES, FAR = 8, 250
+BYTES = (0, 1, 2, 3)
+
+
+def combinations(loop: Loop) -> list[Bytes]:
+    turns = (0,) * len(loop.robot.PERIOD_AXES)
+    return [(*data, *turns) for data in product(BYTES, repeat=loop.robot.BRANCHES)]
+
+
+def compare(loop: Loop, position: tuple[float, ...], sample: Sample, data: Bytes) -> str:
+    """Ask both for the inverse; answers the status."""
+    rotation = asked(loop.robot.orientation, sample.axes)[1] or sample.rotation
+    status, axes = asked(loop.robot.inverse, (position, rotation), data, sample.reference)
+    expected = None if axes is None else axes + (0.0,) * (6 - len(axes))
+    found = loop.controller.inverse(position, rotation, data, sample.reference)
+    assert_same(found, (status, expected), loop, position, sample, data)
+    return status
+
+
+def test_all_branches_at_poses(loops: tuple[Loop, ...]) -> None:
+    for loop in loops:
+        statuses = {
+            compare(loop, loop.robot.forward(sample.axes)[0].position, sample, data)
+            for sample in loop.regular[:POSES]
+            for data in combinations(loop)
+        }
+        assert OK in statuses or loop.machine.label == "limited"
+
+
+def test_the_own_branch_leads_back(loops: tuple[Loop, ...]) -> None:
+    """Not only what Python answers: the axis values that the pose was made of."""
+    for loop in loops[:2]:
+        for sample in loop.regular:
+            status, (position, rotation, data) = loop.controller.forward(sample.axes)
+            own = data[: len(loop.robot.CONFIGURATION)]
+            status, axes = loop.controller.inverse(position, rotation, own, sample.axes)
+            assert status == OK, f"{loop} {sample}"
+            np.testing.assert_allclose(axes[: len(sample.axes)], sample.axes, rtol=1e-8, atol=1e-6)
+
+
+def test_poses_that_may_be_out_of_reach(loops: tuple[Loop, ...]) -> None:
+    """Anywhere around the machine; the own plane of a planar one, and beside it."""
+    rng = np.random.default_rng(21)
+    for loop in loops:
+        opened = combinations(loop)
+        statuses = []
+        for k in range(FAR):
+            size = loop.machine.reach * (0.3, 1.0, 100.0)[k % 3]
+            depth = 0.0 if len(loop.mechanism.task.position) == 2 and k % 10 else 1.0
+            position = tuple((rng.uniform(-1.0, 1.0, 3) * size * (1.0, 1.0, depth)).tolist())
+            statuses.append(compare(loop, position, loop.regular[k % len(loop.regular)], opened[k % len(opened)]))
+        assert UNREACHABLE in statuses
+
+
+def test_a_byte_without_a_meaning_is_refused(loops: tuple[Loop, ...]) -> None:
+    for loop in loops:
+        default = loop.robot.DEFAULT_CONFIGURATION
+        for index, byte in product(range(loop.robot.BRANCHES), (4, 127, 128, 255)):
+            data = (*default[:index], byte, *default[index + 1 :])
+            for sample in loop.regular[:3]:
+                position = loop.robot.forward(sample.axes)[0].position
+                assert compare(loop, position, sample, data) == BAD_INPUT
+
+
+def test_turns(loops: tuple[Loop, ...]) -> None:
+    """All period bytes that an axis can be asked for, and that cannot be met with limits."""
+    for loop in loops:
+        for sample in loop.regular[:3]:
+            frame, own = loop.robot.forward(sample.axes)
+            for index, turn in product(range(loop.robot.BRANCHES, len(own)), (-127, -2, -1, 1, 2, 127)):
+                compare(loop, frame.position, sample, (*own[:index], turn, *own[index + 1 :]))

@@ -1,0 +1,122 @@
+"""Every statement of every emitted loop is executed by the tests of this folder: none is dead, none untried."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from derive.description.mechanism import Mechanism
+from tests.catalogue.loops.edges import EDGES, OTHER_WAY_ROUND, PLACES
+from tests.catalogue.loops.test_bounds import IMPOSSIBLE
+from tests.text import (
+    test_axis_settings,
+    test_blocks_alone,
+    test_configuration_blocks,
+    test_garbage,
+    test_initialise,
+    test_not_initialised,
+)
+from tests.text.closeness import asked, assert_same
+from tests.text.controller import NOT_INITIALIZED, Controller
+from tests.text.loops import test_branches, test_refusals
+from tests.text.loops.answers import COMPARISONS
+from tests.text.loops.machines import LOOPS, Loop, loop_of, loops_of
+from tests.text.loops.test_branches import compare
+from tests.text.other_turns import check_other_turns
+from tests.text.reasons import compare_reason, provoke
+from tests.text.samples import NO_TURN, Bytes, Command, Sample
+from tests.text.statements import Statements
+from tests.text.test_every_statement import few, left_out, libraries
+from tests.text.units import file_of
+
+FEW, FAR = 6, (0.3, 1.0, 3.0)
+"""The number of samples, and how far beyond a pose a place is asked for: a watched call takes its time."""
+
+
+@pytest.mark.parametrize("mechanism", [m for m in LOOPS if not m.home], ids=lambda m: m.name)
+def test_every_statement_runs(mechanism: Mechanism) -> None:
+    """Of the loops that are solved in closed form: the iteration of a platform has `tests/test_hexapod.py`."""
+    loops = loops_of(mechanism)
+    statements = Statements([file_of(mechanism)], libraries(mechanism))
+    with statements.watched():
+        run_the_tests(mechanism, loops)
+        for loop in loops:
+            for sample in (*few(loop.regular, FEW), *few(loop.any, FEW)):
+                compare_all(loop, sample)
+            go_out(loop)
+        for loop in at_edges(mechanism):
+            for sample in loop.regular:
+                compare_all(loop, sample)
+    assert left_out(mechanism, statements) == []
+
+
+def compare_all(loop: Loop, sample: Sample) -> None:
+    for method, answer in COMPARISONS.items():
+        if method.lower() in loop.controller.block.routines:
+            answer(loop, sample)
+
+
+def run_the_tests(mechanism: Mechanism, loops: tuple[Loop, ...]) -> None:
+    """What the comparisons leave out: refusals, and the other blocks."""
+    test_blocks_alone.test_the_number_of_axes(loops)
+    test_blocks_alone.test_calling_the_block_itself_does_nothing(loops)
+    test_not_initialised.test_no_method_works(loops, test_not_initialised.fresh)
+    test_initialise.test_every_parameter_is_checked(loops[-1:])
+    test_refusals.test_limits_are_in_order(loops)
+    test_refusals.test_a_matrix_of_another_size_is_refused(loops, 36)
+    test_refusals.test_a_configuration_that_is_too_small_is_refused(loops)
+    test_garbage.test_garbage_in_one_number(loops[:2] * 2)
+    test_garbage.test_what_is_no_rotation(loops[:2])
+    if loops[0].robot.CONFIGURATION:
+        test_configuration_blocks.test_what_is_set_is_read(loops[1])
+    provoke(loops[1], loops[1].regular[0])
+    test_branches.test_a_byte_without_a_meaning_is_refused(loops[:1])
+    test_refusals.test_every_limit_refuses_alone(loops)
+    check_other_turns(loops[1], loops[1].regular[0])
+    test_axis_settings.every_statement_of_the_settings(mechanism)
+    for name, given, changes, _ in IMPOSSIBLE.values():
+        if name == mechanism.name:
+            assert Controller(loops[0].library, mechanism).initialise(given | changes) == NOT_INITIALIZED
+
+
+def go_out(loop: Loop) -> None:
+    """Away from some poses in all directions, so that every leg in turn is the one that cannot reach."""
+    own, default = loop.robot.CONFIGURATION, loop.robot.DEFAULT_CONFIGURATION
+    for index in range(loop.robot.BRANCHES):
+        sample = loop.regular[0]
+        wrong = (*default[:index], 4, *default[index + 1 :])
+        compare_offset(loop, loop.robot.forward(sample.axes)[0].position, sample, wrong)
+    for sample in loop.regular[:3]:
+        position, _ = loop.robot.forward(sample.axes)[0]
+        for share, x, y, z in product(FAR, (-1, 0, 1), (-1, 0, 1), (-1, 0, 1)):
+            size = share * loop.machine.reach
+            place = tuple(p + size * d for p, d in zip(position, (x, y, z), strict=True))
+            for data in ((0,) * len(own), default):
+                compare_reason(loop, Command(place, NO_TURN, data, sample.axes))
+                compare(loop, place, sample, data)
+                compare_offset(loop, place, sample, data)
+
+
+def compare_offset(loop: Loop, place: tuple[float, ...], sample: Sample, data: Bytes) -> None:
+    """The same for a point off the flange."""
+    if "cartesiantoaxes_offset" in loop.controller.block.routines:
+        asked_for = place, sample.offset, data, sample.reference
+        status, axes = asked(loop.robot.inverse_offset, *asked_for)
+        expected = None if axes is None else axes + (0.0,) * (6 - len(axes))
+        assert_same(loop.controller.inverse_offset(*asked_for), (status, expected), loop, *asked_for)
+
+
+def at_edges(mechanism: Mechanism) -> list[Loop]:
+    """Machines at the end of what can be assembled, at the axis values of the end. Places that no leg can aim at are asked."""
+    others = [OTHER_WAY_ROUND[mechanism.name]] if mechanism.name in OTHER_WAY_ROUND else []
+    found = [loop_of(mechanism, "edge", dimensions, [axes]) for dimensions, axes in (*EDGES[mechanism.name], *others)]
+    for dimensions, places in PLACES.get(mechanism.name, ()):
+        loop = loop_of(mechanism, "place", dimensions, [(0.0,) * len(mechanism.joints)])
+        (sample,) = loop.regular
+        for place, data in product(places, product((0, 1, 2), repeat=loop.robot.BRANCHES)):
+            turned = (*data, *(0,) * len(loop.robot.PERIOD_AXES))
+            compare_reason(loop, Command(place, NO_TURN, turned, sample.axes))
+            compare(loop, place, sample, turned)
+            compare_offset(loop, tuple(p + o for p, o in zip(place, sample.offset, strict=True)), sample, turned)
+    return found

@@ -1,0 +1,94 @@
+"""These tests would notice: a text with one statement slightly wrong answers differently from Python."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from derive.description.mechanism import Mechanism
+from tests.harness.library import Library, compile_st
+from tests.text.breakage import Break, texts
+from tests.text.controller import OK, Controller
+from tests.text.loops.answers import COMPARISONS
+from tests.text.loops.machines import LOOPS, Loop, loops_of
+from tests.text.units import compiled_text, file_of, text_of
+
+PUBLIC = {"AxesToCartesian": "AxesToCartesian", "SolveBranch": "CartesianToAxes", "Jacobian": "Jacobian"}
+"""The methods that are spoiled, and those that must answer differently."""
+SAMPLES = 6
+
+
+OUTPUTS = {
+    "AxesToCartesian": r"^(  |)(f\.vT\.dX := )(.+?);",
+    "SolveBranch": r"^(  |)(\w+\.a0 := )(.+?);",
+    "Jacobian": r"^(  |)(J\[0, 0\] := )(.+?);",
+}
+
+
+def spoiled(text: str, method: str) -> str:
+    """The text with the first output of a method made a little larger."""
+    start = text.index(f"METHOD {'PRIVATE' if method == 'SolveBranch' else 'PUBLIC'} {method} ")
+    end = text.index("END_METHOD", start)
+    pattern = re.compile(OUTPUTS[method], re.MULTILINE | re.DOTALL)
+    wrong, count = pattern.subn(r"\g<1>\g<2>1.0000001*(\g<3>);", text[start:end], count=1)
+    assert count == 1, f"nothing to spoil in {method}"
+    return text[:start] + wrong + text[end:]
+
+
+@pytest.mark.parametrize("method", PUBLIC)
+def test_a_wrong_statement_is_noticed(mechanism: Mechanism, method: str) -> None:
+    library = compiled_text(file_of(mechanism), spoiled(text_of(mechanism), method))
+    with pytest.raises(AssertionError):
+        compare(mechanism, library, PUBLIC[method], SAMPLES)
+
+
+def compare(mechanism: Mechanism, library: Library, method: str, samples: int) -> None:
+    """The comparisons of a method, with another text for the block."""
+    loop = loops_of(mechanism)[1]
+    controller = Controller(library, mechanism)
+    assert controller.initialise(loop.robot.parameters) == OK
+    other = Loop(loop.machine, controller, loop.regular, loop.any)
+    for sample in loop.regular[:samples]:
+        COMPARISONS[method](other, sample)
+
+
+_BRANCH, _FORWARD, _INITIALIZE = "METHOD PRIVATE SolveBranch", "METHOD PUBLIC AxesToCartesian", "METHOD PUBLIC Initialize"
+FIVE_BAR, TRIPOD, DELTA = "Kin_P2C_Type1", "Kin_Tripod_Rotary", "Kin_Delta_P3C_Type3"
+WRONG = {
+    "CartesianToAxes: a knee on the other side": (
+        FIVE_BAR, Break(_BRANCH, "Softkin_Root(sineSquareA1)*sigmaKnee1", "-Softkin_Root(sineSquareA1)*sigmaKnee1"),
+    ),
+    "CartesianToAxes: two legs exchanged": (
+        DELTA, Break(_BRANCH, "a.a0 := axisA1;\na.a1 := axisA2;", "a.a0 := axisA2;\na.a1 := axisA1;"),
+    ),
+    "AxesToCartesian: the other assembly mode": (
+        FIVE_BAR, Break(_INITIALIZE, "2.0*SEL(xTcpAbove, 0.0, 1.0) - 1.0", "1.0 - 2.0*SEL(xTcpAbove, 0.0, 1.0)"),
+    ),
+    "CartesianToAxes: the other assembly mode not refused": (
+        FIVE_BAR, Break(_BRANCH, "assemblySign*(rod1X*rod2Y - rod1Y*rod2X)", "ABS(rod1X*rod2Y - rod1Y*rod2X)"),
+    ),
+    "CartesianToAxes: another least margin": (
+        FIVE_BAR, Break(_BRANCH, "type2ArmsAligned >= minType2Margin", "type2ArmsAligned >= 0.2"),
+    ),
+    "CartesianToAxes: a ball joint that swings less": (
+        TRIPOD, Break(_BRANCH, "<= sinMaxAngleBallJoint", "<= 0.5*sinMaxAngleBallJoint"),
+    ),
+    "IsSingularity: another margin": (
+        TRIPOD, Break("METHOD PUBLIC IsSingularity", "ABS(marginRodsCoplanar) < 0.001", "ABS(marginRodsCoplanar) < 0.9"),
+    ),
+    "AxesToCartesian: another byte for a knee": (
+        DELTA, Break(_FORWARD, "Softkin_BranchByte(branchKnee2)", "Softkin_BranchByte(branchKnee1)"),
+    ),
+    "Jacobian: a slope of the other leg": (FIVE_BAR, Break("METHOD PUBLIC Jacobian", "*sinA2", "*sinA1")),
+}  # fmt: skip
+"""The method that then answers otherwise, what is wrong, and in which unit."""
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_formula_is_noticed(name: str) -> None:
+    named, change = WRONG[name]
+    (mechanism,) = (m for m in LOOPS if m.name == named)
+    with pytest.raises(AssertionError):
+        compare(mechanism, compile_st(texts(change, mechanism)), name.split(":")[0], 120)
+    compare(mechanism, compile_st(texts(None, mechanism)), name.split(":")[0], 10)

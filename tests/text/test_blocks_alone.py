@@ -1,0 +1,131 @@
+"""What a block must do whatever Python does: its methods agree with one another."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from derive.description.mechanism import Turning
+from tests.text.controller import OK, UNREACHABLE
+from tests.text.limits import EXACTLY_A_TURN, has_limits, is_inside
+from tests.text.twins import Twins
+
+ROUND_TRIP = 1e-9
+"""Away from singular poses: relative to a turn, or to the size of the machine."""
+
+
+def unlimited(twins: tuple[Twins, ...]) -> list[Twins]:
+    """The machines on which every pose is allowed."""
+    return [t for t in twins if not has_limits(t.machine)]
+
+
+def is_limited(one: Twins) -> bool:
+    """Whether limits are given that some samples are beyond, checked or not."""
+    if one.machine.label == EXACTLY_A_TURN:
+        return any(joint.is_angle for joint in one.mechanism.joints)
+    return one.machine.label.startswith("limit")
+
+
+def test_inverse_kinematics_finds_the_axes_of_a_pose(twins: tuple[Twins, ...]) -> None:
+    """With the bytes that forward kinematics writes, wherever the reference is where every byte can hold its turn."""
+    for one in unlimited(twins):
+        for sample in one.regular:
+            status, pose = one.controller.forward(sample.axes)
+            assert status == OK
+            position, rotation, data = pose
+            status, axes = one.controller.inverse(position, rotation, data, sample.reference)
+            assert status == OK, f"{one} {sample}"
+            count = len(sample.axes)
+            worst = max(abs(a - b) for a, b in zip(axes, sample.axes, strict=False))
+            assert worst <= ROUND_TRIP * (one.machine.reach + 360.0), f"{one} {sample} {axes}"
+            assert axes[count:] == (0.0,) * (6 - count)
+
+
+def test_limits_refuse_what_is_beyond_them_and_nothing_else(twins: tuple[Twins, ...]) -> None:
+    """Where every byte says what was chosen, and so no other solution is possible."""
+    for one in twins:
+        inside = is_inside(one.machine, np.array([sample.axes for sample in one.regular]))
+        for sample, is_allowed in zip(one.regular, inside, strict=True):
+            _, (position, rotation, data) = one.controller.forward(sample.axes)
+            status, _ = one.controller.inverse(position, rotation, data, sample.reference)
+            assert status == (OK if is_allowed or not one.robot.checks_limits else UNREACHABLE), f"{one} {sample}"
+        assert set(inside) == ({True, False} if is_limited(one) else {True})
+
+
+def test_the_number_of_axes(twins: tuple[Twins, ...]) -> None:
+    for one in twins:
+        assert one.controller.block.get("NumAxes") == len(one.mechanism.joints)
+
+
+def test_calling_the_block_itself_does_nothing(twins: tuple[Twins, ...]) -> None:
+    """A block is a set of methods: its body is empty."""
+    one = twins[1]
+    fields = [v.name for section in one.library.objects[one.mechanism.block_name].sections for v in section.variables]
+    before = [getattr(one.controller.block, name) for name in fields]
+    one.controller.block()
+    assert [getattr(one.controller.block, name) for name in fields] == before
+
+
+def test_the_orientation_is_that_of_the_frame_and_in_the_image(twins: tuple[Twins, ...]) -> None:
+    """A flange with one degree of freedom turns about its axis; one with none does not turn."""
+    for one in twins:
+        whole = "GetOrientationImage".lower() not in one.controller.block.routines
+        method = "GetFlangeOrientationImageTotal" if whole else "GetOrientationImage"
+        _, (freedom, zero, base, flange) = one.controller.image(method)
+        assert freedom == one.robot.FREEDOM
+        for sample in one.regular:
+            rotation = one.controller.forward(sample.axes)[1][1]
+            assert whole or one.controller.orientation(sample.axes) == (OK, rotation)
+            if freedom == "three":
+                continue  # anything
+            turned = [sum(r * u for r, u in zip(row, flange, strict=True)) for row in rotation]
+            assert turned == pytest.approx(base, abs=1e-12)
+            if freedom == "zero":
+                assert rotation == zero
+
+
+def test_the_projected_orientation_is_the_one_that_the_axes_reach(twins: tuple[Twins, ...]) -> None:
+    """For tilted commands: GetFlangeOrientationImageWithOri, and forward kinematics of inverse kinematics."""
+    for one in unlimited(twins):
+        if "getflangeorientationimagewithori" not in one.controller.block.routines:
+            continue
+        for sample in one.regular:
+            position = one.controller.forward(sample.axes)[1][0]
+            default = one.robot.DEFAULT_CONFIGURATION
+            status, axes = one.controller.inverse(position, sample.rotation, default, sample.axes)
+            image_status, image = one.controller.image_with_orientation(sample.rotation)
+            assert image_status == OK
+            if status != OK:  # the last link swings with the commanded orientation
+                assert status == UNREACHABLE
+                continue
+            reached = one.controller.forward(axes)[1][1]
+            followed = slice(2, 3) if one.mechanism.task.turning is Turning.DIRECTION else slice(3)
+            for row, wanted in zip(reached, image[1], strict=True):
+                assert row[followed] == pytest.approx(wanted[followed], abs=1e-12)
+
+
+def test_a_point_off_the_flange_comes_to_its_place(twins: tuple[Twins, ...]) -> None:
+    """Round trip of the offset interface, with the configuration that it gives itself."""
+    for one in unlimited(twins):
+        if "cartesiantoaxes_offset" not in one.controller.block.routines:
+            continue
+        for sample in one.regular:
+            for offset in ((0.0, 0.0, 0.0), sample.offset):
+                point = place(one, sample.axes, offset)
+                data = (0,) * 32
+                if one.robot.CONFIGURATION:
+                    data = one.controller.configuration_offset(sample.axes, offset)
+                status, axes = one.controller.inverse_offset(point, offset, data, sample.axes)
+                assert status == OK, f"{one} {sample}"
+                found = place(one, axes[: len(sample.axes)], offset)
+                size = one.machine.reach + math.hypot(*point)
+                assert found == pytest.approx(point, abs=1e-9 * size), f"{one} {sample} {offset}"
+
+
+def place(one: Twins, axes: tuple[float, ...], offset: tuple[float, ...]) -> list[float]:
+    """Where a point of the flange is at axis values, by the block's own forward kinematics."""
+    position, rotation, _ = one.controller.forward(axes)[1]
+    turned = [sum(r * o for r, o in zip(row, offset, strict=True)) for row in rotation]
+    return [p + t for p, t in zip(position, turned, strict=True)]

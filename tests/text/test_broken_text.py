@@ -1,0 +1,67 @@
+"""An emitted unit, broken in every way: the harness refuses it, it faults while it runs, or a comparison fails.
+
+Without this, all other tests of the folder could pass for the wrong reason.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+
+from tests.harness.library import Library, StError, StFault, compile_st
+from tests.text.breakage import FAULTS, MECHANISM, REFUSED, WRONG, texts
+from tests.text.comparisons import COMPARISONS
+from tests.text.controller import OK, Controller
+from tests.text.twins import Twins, twins_of
+
+
+def with_text_of(library: Library, label: str) -> Twins:
+    """A machine, with another text for its block."""
+    (one,) = (t for t in twins_of(MECHANISM) if t.machine.label == label)
+    controller = Controller(library, MECHANISM)
+    assert controller.initialise(one.robot.parameters) == OK
+    return Twins(one.machine, controller)
+
+
+def compare(library: Library, *methods: str) -> None:
+    """The comparisons of some methods."""
+    for label in ("random 1", "limited"):
+        one = with_text_of(library, label)
+        for sample in one.regular[::2]:
+            for method in methods:
+                COMPARISONS[method](one, sample)
+
+
+def test_unbroken_it_compiles_and_agrees() -> None:
+    """The changes below are made to a text that is right."""
+    compare(compile_st(texts()), *COMPARISONS)
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_a_broken_text_is_refused(name: str) -> None:
+    with pytest.raises(StError, match=re.escape(REFUSED[name].said)):
+        compile_st(texts(REFUSED[name]))
+
+
+def test_a_missing_object_is_refused() -> None:
+    found = {file: text for file, text in texts().items() if file != "Softkin_Root.st"}
+    with pytest.raises(StError, match="undeclared function Softkin_Root"):
+        compile_st(found)
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_stops_the_text(name: str) -> None:
+    library = compile_st(texts(FAULTS[name]))
+    one = with_text_of(library, "random 1")
+    with pytest.raises(StFault, match=FAULTS[name].said):
+        compare(library, "AxesToCartesian", "CartesianToAxes")
+        one.controller.forward((math.inf, 0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_text_is_noticed(name: str) -> None:
+    library = compile_st(texts(WRONG[name]))
+    with pytest.raises(AssertionError):
+        compare(library, name.split(":")[0])

@@ -1,0 +1,220 @@
+"""The emitted Structured Text against the SoftMotion contract and the rules of its layout."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+
+import pytest
+
+from derive.__main__ import OUTPUT
+from derive.emit.st.contract import load
+from tests.harness import ast
+from tests.harness.contract import INTERFACES, plain
+from tests.harness.library import Library, compile_st
+
+FILES = {str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))}
+UNITS = [name for name in FILES if not name.startswith(("softkin/", "selftest/"))]
+CONTRACT = load()
+PRIVATE = {"SolveBranch", "SolveOffsetBranch", "TestLimits", "FindPlatform", "EndPointOnFlange", "LimitsOfAxis"}
+PRIVATE |= {"FindRoot", "TryAt", "TryJoint", "FinishRoot"}
+ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2")
+
+# Every piece of text that is no comment, string or pragma.
+_SILENT = re.compile(r"\(\*.*?\*\)|//[^\n]*|\{[^}]*\}|'[^'\n]*'", re.DOTALL)
+
+
+@lru_cache
+def library() -> Library:
+    """All units together: parsed, with their types, names, writes and interfaces checked."""
+    return compile_st(FILES)
+
+
+def blocks() -> dict[str, ast.Block]:
+    """The function blocks of mechanisms by file."""
+    found = {name.split("/")[-1].removesuffix(".st"): name for name in UNITS}
+    return {found[d.name]: d for d in library().objects.values() if isinstance(d, ast.Block) and d.name in found}
+
+
+def code(file: str) -> Iterator[tuple[int, str]]:
+    """The numbered lines of a text without comments, strings and pragmas."""
+    bare = _SILENT.sub(lambda m: "''" if m.group().startswith("'") else "\n" * m.group().count("\n"), FILES[file])
+    return enumerate(bare.split("\n"), start=1)
+
+
+def test_every_mechanism_has_its_block() -> None:
+    assert len(blocks()) == len(UNITS) >= 20
+
+
+@pytest.mark.parametrize("name", CONTRACT.interfaces)
+def test_the_contract_data_agrees_with_the_stand_ins(name: str) -> None:
+    """Two files condensed from the documentation, one for the emitter and one for the harness."""
+    emitted, independent = CONTRACT.interfaces[name], INTERFACES[name]
+    assert list(emitted.extends) == independent["extends"]
+    assert dict(emitted.properties) == independent["properties"]
+    assert set(emitted.methods) == set(independent["methods"])
+    for method, signature in emitted.methods.items():
+        wanted = independent["methods"][method]
+        assert plain(signature.returns or None) == plain(wanted["returns"])
+        given = [(p.scope, p.name, plain(p.type)) for p in signature.parameters]
+        assert given == [(scope, parameter, plain(kind)) for scope, parameter, kind in wanted["params"]]
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_methods_are_those_of_the_contract(file: str) -> None:
+    block = blocks()[file]
+    interfaces = list(CONTRACT.closure([name.removeprefix("TRAFO.") for name in block.implements]))
+    wanted = {m: s for i in interfaces for m, s in i.methods.items()} | dict(CONTRACT.own)
+    found = {m.name: m for m in block.methods if m.access == "PUBLIC"}
+    assert set(found) == set(wanted)
+    for name, method in found.items():
+        signature = wanted[name]
+        assert ("" if method.returns is None else method.returns.text) == signature.returns
+        given = [(p.scope, p.name, p.type) for p in method.params]
+        assert given == [(p.scope, p.name, p.type) for p in signature.parameters]
+    assert {m.name for m in block.methods if m.access == "PRIVATE"} <= PRIVATE
+    assert {(p.name, p.type.text) for p in block.properties} == {("NumAxes", "UDINT")}
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_the_newest_interfaces_that_fit(file: str) -> None:
+    block = blocks()[file]
+    names = [name.removeprefix("TRAFO.") for name in block.implements]
+    has_configuration = f"{block.name}_Config" in library().objects
+    assert {"ISMKinematicWithInfo2", "ISMKinematicWithInitialization"} <= set(names)
+    assert ("ISMKinematicWithConfigurations4" in names) == has_configuration
+    assert f"{block.name}_ReadConfig" in library().objects or not has_configuration
+    is_orientation = file.startswith("orientation/")
+    is_position = "GetOrientationImage" in {m.name for m in block.methods}
+    offset = "ISMPositionKinematics_Offset2" if has_configuration else "ISMPositionKinematics_Offset"
+    assert sum(name in ("ISMPositionKinematics2", offset) for name in names) == is_position
+    assert sum(name in ORIENTATION for name in names) == (3 if is_orientation else 0)
+    assert is_position or is_orientation or "ISMKinematicsWithOrientationImage2" in names
+    assert "ISMKinPeriodHandling" not in names or has_configuration
+    assert "ISMOrientationKinematicsWithOriImage" not in names  # it declares another GetOrientationImage than a position does
+    assert not (is_orientation and (is_position or "ISMKinematicsWithOrientationImage2" in names))
+
+
+def test_the_kinds_of_the_vendors_parts() -> None:
+    """A position part whose flange turns freely is one still; a complete robot is none."""
+    kinds = {
+        "articulated/Softkin_Pos_RRR.st": "ISMPositionKinematics_Offset2",
+        "articulated/Softkin_5Axes.st": "ISMKinematicsWithOrientationImage2",
+        "articulated/Softkin_ArticulatedRobot_6DOF.st": "ISMKinematicsWithOrientationImage2",
+        "orientation/Softkin_Wrist3.st": "ISMOrientationKinematics3",
+    }
+    for file, interface in kinds.items():
+        assert f"TRAFO.{interface}" in blocks()[file].implements
+
+
+def test_two_blocks_implement_everything() -> None:
+    files = ("scara/Kin_Scara4_ZCcoupled_Type1.st", "orientation/Softkin_Wrist3.st")
+    names = [name.removeprefix("TRAFO.") for file in files for name in blocks()[file].implements]
+    assert set(CONTRACT.interfaces) == {i.name for i in CONTRACT.closure(names)}
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_layout(file: str) -> None:
+    """One statement a line, two spaces an indent, capital keywords, no line that needs scrolling."""
+    text = FILES[file]
+    assert text.startswith("// Generated by ") and text.endswith("\n") and not text.endswith("\n\n")
+    assert text.isascii() and "\t" not in text and "\n\n\n" not in text
+    for number, line in enumerate(text.split("\n"), start=1):
+        assert line == line.rstrip() and len(line) <= 120, f"{file}:{number}"
+        assert (len(line) - len(line.lstrip())) % 2 == 0, f"{file}:{number}"
+    for number, line in code(file):
+        assert line.count(";") <= 1 and not re.search(r";\s*\S", line), f"{file}:{number}: two statements"
+        for word in re.findall(r"\b(?:if|then|else|elsif|end_if|for|to|do|return|and|or|not|lreal|bool|var)\b", line):
+            raise AssertionError(f"{file}:{number}: {word}")
+
+
+def test_names_of_objects_are_unique_ignoring_case() -> None:
+    names = [name.lower() for name in library().objects]
+    assert len(names) == len(set(names))
+    assert all(name.startswith(("softkin_", "kin_", "mc_kin_", "prg_softkin")) for name in names)
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_names_inside_a_block_are_unique_ignoring_case(file: str) -> None:
+    block = blocks()[file]
+    members = [v.name for s in block.sections for v in s.variables] + [m.name for m in block.methods] + ["NumAxes"]
+    for method in block.methods:
+        own = [v.name for s in method.sections for v in s.variables]
+        names = [name.lower() for name in (*members, *own)]
+        assert len(names) == len(set(names)), f"{file}: {method.name}"
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_only_initialize_and_the_settings_write_the_instance(file: str) -> None:
+    """AxisSettings in its last statements, and nothing but the limits that count; Initialize not what drives have handed over."""
+    block = blocks()[file]
+    members = {v.name.lower() for s in block.sections for v in s.variables}
+    for method in block.methods:
+        written = members & set(_written(method.body))
+        if method.name == "AxisSettings":
+            assert all(re.fullmatch(r"(lowest|highest|single|mid|drive(limited|lower|upper)).*", name) for name in written)
+            assert not members & set(_written(method.body[:-2])), file
+            assert isinstance(method.body[-2], ast.Case) and isinstance(method.body[-1], ast.Assign)
+        elif method.name == "Initialize":
+            assert not [name for name in written if name.startswith("drive")], file
+        else:
+            assert not written, f"{file}: {method.name}"
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_blocks_with_turns_take_the_limits_of_the_drives(file: str) -> None:
+    block = blocks()[file]
+    has_turns = "TRAFO.ISMKinPeriodHandling" in block.implements
+    assert ("TRAFO.ISMKinematicAxisSettings" in block.implements) == has_turns
+    assert ("narrow those of the block" in " ".join(block.comment.split())) == has_turns
+
+
+def _written(body: tuple[ast.Statement, ...]) -> Iterator[str]:
+    """The variables that statements assign, however deep."""
+    for statement in body:
+        if isinstance(statement, ast.Assign):
+            target = statement.target
+            while isinstance(target, ast.Member | ast.Index):
+                target = target.object
+            if isinstance(target, ast.Name):
+                yield target.text.lower()
+        elif isinstance(statement, ast.If | ast.Case):
+            for branch in statement.branches:
+                yield from _written(branch.body)
+            yield from _written(statement.otherwise)
+        elif isinstance(statement, ast.For | ast.While):
+            yield from _written(statement.body)
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_inputs_are_documented(file: str) -> None:
+    block = blocks()[file]
+    assert any("'sm_kin_libdoc'" in p for p in block.pragmas)
+    axes = [p for p in block.pragmas if "'sm_kin_axes'" in p]
+    assert len(axes) == (file != "orientation/Softkin_Tool.st")
+    assert all(re.fullmatch(r"\{attribute 'sm_kin_axes' := '\w+(, \w+)*'\}", a) for a in axes)
+    for title in ("**Axes**", "**Parameters**", "**Configuration**", "**Singularities**", "**Workspace**", "**Verification**"):
+        assert title in block.comment
+    for given in (v for s in block.sections if s.scope == "VAR_INPUT" for v in s.variables):
+        assert given.comment and given.initial is not None
+        kind, prefix = given.type.text, given.name[0]
+        assert {"LREAL": "d", "BOOL": "x", "INT": "i"}[kind] == prefix
+        interval = [p for p in given.pragmas if "'sm_kin_param_range'" in p]
+        assert len(interval) == (kind != "BOOL")
+        for pragma in interval:
+            assert re.search(r":= '[\[\]](-inf|-?\d+) \.\. (\+inf|-?\d+)[\[\]]'\}", pragma)
+            assert "-inf" not in pragma or "']-inf" in pragma
+            assert "+inf" not in pragma or "+inf['" in pragma
+        unit = [p.split("'")[3] for p in given.pragmas if "'sm_kin_param_unit'" in p]
+        assert unit or kind != "LREAL" or given.name == "dMinType2Margin" or given.name.startswith("dCoupling"), "a number"
+        if given.name.startswith(("dLinkLength", "dArmLength")):
+            assert unit == ["u"]
+
+
+def test_vendor_ranges_are_half_open() -> None:
+    block = blocks()["scara/Kin_Scara4_ZCcoupled_Type1.st"]
+    inputs = {v.name: v for s in block.sections if s.scope == "VAR_INPUT" for v in s.variables}
+    assert "{attribute 'sm_kin_param_range' := ']0 .. 800]'}" in inputs["dLinkLength1"].pragmas
+    assert "{attribute 'sm_kin_param_range' := '[-200 .. 200]'}" in inputs["dPitchZC"].pragmas
+    assert {"xCheckLimits", "dOffsetA1", "dLowerA4", "dUpperA4"} <= inputs.keys()

@@ -1,0 +1,176 @@
+"""The header of every unit states what its calls cost at most: counted while the emitted text runs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import astuple
+from itertools import product
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism
+from derive.ir.primitives import (
+    Atan2,
+    NearestOnArc,
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Call,
+    Iterate,
+    Let,
+    Output,
+    Program,
+    Require,
+    Solve,
+    Status,
+)
+from derive.ir.symbols import (
+    SCALE,
+    real,
+)
+from derive.kinematics.parameters import (
+    machine_parameters,
+)
+from derive.kinematics.sampling import sample_axes
+from derive.report.cost import Cost, cost_of, expression_cost, solve_cost
+from tests.text.controller import OK, Controller
+from tests.text.counting import counted, counting_units
+from tests.text.samples import NO_TURN
+from tests.text.units import text_of
+from tests.text.values import Numbers
+
+X, Y, Z = map(real, "xyz")
+CELLS = tuple(product(range(6), range(6)))
+ALL = tuple(m for _, m in catalogue() if m.joints)
+POSES = 16
+REACH = 500.0
+
+
+def stated(mechanism: Mechanism) -> list[Cost]:
+    """The rows of the table in the header: forward, inverse, and inverse with every branch open."""
+    row = r"^(?:AxesTo|CartesianTo)\w+(?:, .*?)?" + 5 * r" +(\d+)" + "$"
+    rows = re.findall(row, text_of(mechanism), re.MULTILINE)
+    return [Cost(*map(int, row)) for row in rows]
+
+
+def most(found: list[Cost]) -> Cost:
+    """The largest of every kind."""
+    return Cost(*map(max, zip(*map(astuple, found), strict=True)))
+
+
+def is_within(found: Cost, bound: Cost) -> bool:
+    """Whether there are at most so many of every kind."""
+    return all(f <= b for f, b in zip(astuple(found), astuple(bound), strict=True))
+
+
+@pytest.mark.parametrize("mechanism", ALL, ids=lambda m: m.name)
+def test_no_call_costs_more_than_its_header_states(mechanism: Mechanism) -> None:
+    """And the header does not exaggerate: it counts both values of a choice, but choices are small."""
+    machine = Controller(counting_units(mechanism), mechanism)
+    parameters = {p.name: p.nominal for p in machine_parameters(mechanism)}
+    assert machine.initialise(parameters) == OK
+    opened = len(mechanism.branches)
+    forward, inverse, automatic = [], [], []
+    for axes in _axes(mechanism, machine, parameters):
+        forward.append(counted(machine.forward, axes))
+        status, pose = machine.forward(axes)
+        if status == OK:
+            position, rotation, data = pose
+            inverse.append(counted(machine.inverse, position, rotation, data, axes))
+            automatic.append(counted(machine.inverse, position, rotation, (0,) * opened + data[opened:], axes))
+    header = stated(mechanism)
+    assert len(header) == (3 if mechanism.branches else 2)
+    for found, bound in zip((forward, inverse, automatic), header, strict=False):
+        assert is_within(most(found), bound), f"{most(found)} {bound}"
+    if not mechanism.is_platform:
+        found, bound = most(forward), header[0]
+        assert (found.multiplications, found.divisions, found.roots, found.trigonometric) == astuple(bound)[1:]
+        assert found.additions >= bound.additions - 1 - len(mechanism.period_joints)  # of turns below zero
+    if not mechanism.is_platform and mechanism.search is None:
+        assert sum(astuple(most(inverse))) >= 0.5 * sum(astuple(header[1]))
+
+
+def _axes(mechanism: Mechanism, machine: Controller, parameters: Mapping[str, float]) -> list[Numbers]:
+    """Axis values all over the ranges; of a platform, at poses near home."""
+    if mechanism.is_platform:
+        home = [float(e.subs({real(n): v for n, v in parameters.items()})) for e in mechanism.home[:3]]
+        places = ((home[0] + k, home[1] - 2 * k, home[2]) for k in range(3))
+        return [machine.inverse(place, NO_TURN, (), ())[1] for place in places]
+    drawn = sample_axes(mechanism, {n: np.asarray(v) for n, v in (parameters | {SCALE.name: REACH}).items()}, POSES, 2)
+    return np.stack([drawn[j.axis.name] for j in mechanism.joints], axis=1).tolist()
+
+
+@pytest.mark.parametrize("size", range(1, 7))
+def test_linear_equations(size: int) -> None:
+    """Exactly what the function does, for every size: with the largest pivots in place, and out of it."""
+    solve = counting_units().function("Softkin_Solve")
+    for columns in range(7):
+        for shift in (0, 1):
+            matrix = [0.1 * (r * c % 5) + 9.0 * ((r + shift) % size == c) if max(r, c) < size else 0.0 for r, c in CELLS]
+            found = counted(solve, aMatrix=matrix, aRight=[1.0] * 36, iSize=size, iColumns=columns)
+            assert found == solve_cost(size, columns)
+
+
+PRIMITIVES = {
+    "Softkin_Root": (Root(X), {"dValue": (2.0,)}),
+    "Softkin_Atan2": (Atan2(Y, X), {"dY": (1.0, -2.0), "dX": (-1.5, -3.0)}),
+    "Softkin_NearestPeriod": (NearestPeriod(X, Y), {"dValue": (-200.0, 10.0), "dCentre": (0.0, 300.0)}),
+    "Softkin_NearestOnArc": (NearestOnArc(X, Y, Z), {"dAngle": (-9.0, 1.0), "dCentre": (0.0, 2.0), "dHalf": (0.1, 1.0)}),
+}
+
+
+@pytest.mark.parametrize("name", PRIMITIVES)
+def test_primitives(name: str) -> None:
+    """At worst exactly what the function does."""
+    expression, given = PRIMITIVES[name]
+    function = counting_units().function(name)
+    choices = product(*given.values())
+    assert most([counted(function, **dict(zip(given, values, strict=True))) for values in choices]) == expression_cost(expression)
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        (X - Y, Cost(1)),
+        (-X, Cost()),
+        (2 * X - Y / 3, Cost(1, 1, 1)),
+        (X / 2, Cost(0, 1)),
+        (X / (Y * Z), Cost(0, 1, 1)),
+        (1 / X, Cost(0, 0, 1)),
+        ((X + Y) ** 2, Cost(2, 1)),
+        (-3 * X * Y / (7 * Z**2), Cost(0, 4, 1)),
+        (sp.sin(X) * sp.cos(Y) + Root(X), Cost(1, 1, 0, 1, 2)),
+        (Select(sp.Gt(X + Y, 0), X * Y, sp.sin(X)), Cost(1, 1, 0, 0, 1)),
+        (sp.And(sp.Le(sp.Abs(X - 1), Y), sp.Gt(X * Z, 0)), Cost(1, 1)),
+    ],
+)
+def test_expressions(expression: sp.Basic, expected: Cost) -> None:
+    assert expression_cost(expression) == expected
+
+
+def test_statements() -> None:
+    """A loop counts as often as it may run, a call as what it calls, with its outputs."""
+    total, half = real("total"), real("half")
+    shared = Program("shared", (X,), (Let(half, X / 2),), (Output("half", half + 1),))
+    body = (
+        Call(shared, ((X, Y * Z),), (half,)),
+        Iterate((total,), (X + Y,), (Let(real("step"), total * X),), (total - 1,), sp.Le(total + X, 0), 9, Status.IMPOSSIBLE),
+        Solve((real("answer"),), (X * Y,), (Z,)),
+        Require(sp.Gt(X + Y, 0), Status.UNREACHABLE),
+    )
+    program = Program("whole", (X, Y, Z), body, (Output("answer", real("answer") / half),))
+    called, loop, solved = Cost(1, 2), Cost(1) + Cost(2, 1) * 9, Cost(0, 1) + solve_cost(1, 1)
+    assert cost_of(program) == called + loop + solved + Cost(1) + Cost(divisions=1)
+
+
+def test_the_bound_of_an_iteration_is_stated() -> None:
+    texts = {m.name: text_of(m) for m in ALL if m.is_platform or m.search is not None}
+    assert len(texts) >= 2
+    for text in texts.values():
+        assert re.search(r"at most \d+ passes, all of which", text)

@@ -1,0 +1,26 @@
+"""Every method of every emitted block is executed, and answers what its Python twin answers."""
+
+from __future__ import annotations
+
+import pytest
+
+from derive.description.mechanism import Mechanism
+from tests.text.comparisons import COMPARISONS, POSELESS
+from tests.text.twins import MECHANISMS, twins_of
+from tests.text.units import compiled
+
+METHODS = [
+    (mechanism, method.name)
+    for mechanism in MECHANISMS
+    for method in compiled(mechanism).objects[mechanism.block_name].methods
+    if method.access != "PRIVATE"
+]
+"""Every method that stands in the emitted text. That private ones run is shown statement by statement elsewhere."""
+
+
+@pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
+def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str) -> None:
+    compare = COMPARISONS[method]
+    for twins in twins_of(mechanism):
+        for sample in twins.regular[: 3 if method in POSELESS else None]:
+            compare(twins, sample)

@@ -1,0 +1,150 @@
+"""Every statement of every emitted unit is executed by the tests of this folder: none is dead, none untried."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import softkin
+
+from derive.description.mechanism import Mechanism
+from derive.emit.st.names import capitalized
+from tests.catalogue.machines import bare_machine
+from tests.harness.library import Library
+from tests.text import (
+    test_axis_settings,
+    test_blocks_alone,
+    test_configuration_blocks,
+    test_garbage,
+    test_initialise,
+    test_limits,
+    test_matrix_functions,
+    test_not_initialised,
+    test_shared_functions,
+    test_singular_poses,
+)
+from tests.text.comparisons import COMPARISONS
+from tests.text.reasons import provoke
+from tests.text.samples import Sample, coinciding
+from tests.text.statements import Statements
+from tests.text.twins import Twins, twins_from, twins_of
+from tests.text.units import compiled, compiled_shared, file_of, shared_texts, text_of
+
+MACHINES = ("plain", "equal", "limited", "limited to a turn")
+FEW, FEW_OF_THE_GRID = 3, 25
+"""The numbers of samples: a watched call takes its time."""
+
+
+def test_every_statement_runs(mechanism: Mechanism) -> None:
+    twins = twins_of(mechanism)
+    statements = Statements([file_of(mechanism)], libraries(mechanism))
+    with statements.watched():
+        run_the_tests(mechanism, twins)
+        for one in (one for one in twins if one.machine.label in MACHINES):
+            for sample in (*few(one.regular, FEW), *(few(one.grid, FEW_OF_THE_GRID) if one.machine.label == "equal" else ())):
+                compare_all(one, sample)
+        if twins[0].machine.is_spatial and mechanism.branches:
+            for one in (*twins[:3], twins_from(bare_machine(mechanism))):
+                for sample in few(coinciding(one.machine), FEW_OF_THE_GRID):
+                    compare_all(one, sample)
+    assert left_out(mechanism, statements) == []
+
+
+def test_every_statement_of_the_shared_objects_runs() -> None:
+    kinds = product(test_matrix_functions.ORDERS, (72, 36))
+    libraries = [compiled_shared(), *(test_matrix_functions.library(*kind) for kind in kinds)]
+    libraries += [test_matrix_functions.misbehaving(name) for name in test_matrix_functions.BROKEN]
+    statements = Statements(shared_texts(), libraries)
+    with statements.watched():
+        for size in range(1, 7):
+            test_shared_functions.test_solve(size)
+        test_shared_functions.test_solve_where_nothing_solves(np.ones((3, 3)))
+        for test in vars(test_shared_functions).values():
+            if getattr(test, "__name__", "").startswith("test_") and not hasattr(test, "pytestmark"):
+                test()
+        for order in test_matrix_functions.ORDERS:
+            test_matrix_functions.test_the_order_is_found(order)
+            test_matrix_functions.test_read_and_write(order)
+        for name in test_matrix_functions.BROKEN:
+            test_matrix_functions.test_no_order_where_the_library_behaves_otherwise(name)
+        test_matrix_functions.test_no_order_where_the_size_differs(36)
+        test_matrix_functions.test_nothing_is_touched_where_the_matrix_is_not_known(36, "Rows")
+    assert [str(place) for place in statements.left_out()] == []
+
+
+def left_out(mechanism: Mechanism, statements: Statements) -> list[str]:
+    """The statements of a unit that did not run, but for those that no input reaches."""
+    lines = text_of(mechanism).split("\n")
+    missing = {place.line for place in statements.left_out()}
+    missing = {line for line in missing - unreachable(mechanism, lines) if not lines[line - 1].startswith("FUNCTION_BLOCK")}
+    return [f"{line}: {lines[line - 1].strip()}" for line in sorted(missing)]
+
+
+def few(samples: tuple[Sample, ...], count: int) -> tuple[Sample, ...]:
+    """About that many of some samples, from all over them."""
+    return samples[:: max(1, len(samples) // count)]
+
+
+def libraries(mechanism: Mechanism) -> list[Library]:
+    """The unit, as the tests compile it."""
+    found = [compiled(mechanism), compiled(mechanism, matrix_size=36)]
+    if len(softkin.catalogue()[mechanism.name].CONFIGURATION) > 1:
+        found.append(test_initialise.without_index_checks(mechanism))
+    return found
+
+
+def compare_all(one: Twins, sample: Sample) -> None:
+    for method, compare in COMPARISONS.items():
+        if method.lower() in one.controller.block.routines:
+            compare(one, sample)
+
+
+def run_the_tests(mechanism: Mechanism, twins: tuple[Twins, ...]) -> None:
+    """What the comparisons leave out: refusals, and the other blocks."""
+    test_blocks_alone.test_the_number_of_axes(twins)
+    test_blocks_alone.test_calling_the_block_itself_does_nothing(twins)
+    test_not_initialised.test_no_method_works(twins, test_not_initialised.fresh)
+    test_initialise.test_every_parameter_is_checked(twins[-1:])
+    test_initialise.test_limits_are_in_order(mechanism, 10.0, 10.0)
+    test_initialise.test_a_matrix_of_another_size_is_refused(mechanism, 36)
+    test_initialise.test_a_configuration_that_is_too_small_is_refused(mechanism)
+    test_limits.test_every_limit_refuses_alone(twins)
+    test_limits.test_a_turn_that_refuses_is_told_with_the_one_inside(twins)
+    test_axis_settings.every_statement_of_the_settings(mechanism)
+    test_garbage.test_garbage_in_one_number(twins)
+    test_garbage.test_a_pose_that_cannot_be_assembled(twins)
+    test_garbage.test_what_is_no_rotation(twins)
+    test_singular_poses.test_a_point_on_the_axis_of_a_link_cannot_be_aimed(twins[:3])
+    provoke(twins[1], twins[1].regular[0])
+    if mechanism.constraints:
+        test_initialise.test_the_coupling_is_given_once()
+    if mechanism in test_configuration_blocks.CONFIGURABLE:
+        test_configuration_blocks.test_what_is_set_is_read(twins[1])
+
+
+def unreachable(mechanism: Mechanism, lines: list[str]) -> set[int]:
+    """The lines that no input reaches: an axis whose closure allows an interval only is never without limits, a
+    CONFIGDATA of no bytes does not exist, and a divisor that was refused already is not replaced any more."""
+    keys = [capitalized(joint.key) for joint in mechanism.joints if joint.domain is not None]
+    dead = {f"{word}{key} := {value};" for key in keys for word, value in (("lowest", "-1.0E12"), ("highest", "1.0E12"))}
+    found = {number for number, line in enumerate(lines, 1) if line.strip() in dead}
+    empty = [number for number, line in enumerate(lines, 1) if line == "IF SIZEOF(configuration) < 1 THEN"]
+    return found.union(replaced_after_a_refusal(lines), *({number + 1, number + 2} for number in empty))
+
+
+def replaced_after_a_refusal(lines: list[str]) -> set[int]:
+    """The line behind `ELSE` where the same method refuses what the condition does not admit."""
+    required: set[str] = set()
+    found: set[int] = set()
+    for number, line in enumerate(lines):
+        if line.startswith("METHOD "):
+            required.clear()
+        if not line.startswith("IF "):
+            continue
+        end = next(k for k in range(number, len(lines)) if lines[k].endswith(" THEN"))
+        condition = " ".join(part.strip() for part in lines[number : end + 1])[3:-5]
+        if condition.startswith("NOT (") and "  RETURN;" in lines[end + 1 : end + 3]:
+            required.add(condition[5:-1])
+        elif condition in required:
+            found.add(lines.index("ELSE", end) + 2)
+    return found

@@ -1,0 +1,176 @@
+"""Garbage in every input of every method: a status and outputs untouched, or never read; nothing stops a controller."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from tests.text import values
+from tests.text.any_method import Call, call_of, methods_of
+from tests.text.closeness import asked, assert_same
+from tests.text.comparisons import COMPARISONS, padded
+from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK
+from tests.text.samples import NO_TURN, Rows
+from tests.text.twins import Twins
+
+GARBAGE = (math.nan, math.inf, -math.inf, 1e300, -1e300, 1.1e9)
+NO_ROTATIONS: tuple[Rows, ...] = (
+    ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+    ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, -1.0)),
+    ((1.0001, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    ((1.0, 0.0002, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+    ((1e9, 1e9, 1e9), (1e9, 1e9, 1e9), (1e9, 1e9, 1e9)),
+)
+"""Nothing, mirrored, stretched by a little, sheared by a little, swapped, huge."""
+
+FORWARD_METHODS = ("AxesToCartesian", "AxesToOrientation", "Jacobian", "IsSingularity", "AxesToConfiguration_Offset")
+
+
+def real_inputs(call: Call) -> Iterator[tuple[str, values.Path]]:
+    """Where the reals lie that a method reads."""
+    for name in call.inputs:
+        for path in values.scalars(call.arguments[name]):
+            if path and isinstance(values.element(call.arguments[name], path), float):
+                yield name, path
+
+
+def check(call: Call, clean: tuple[Any, dict[str, Any]], what: object) -> None:
+    """A refusal that wrote nothing, or the answer to clean inputs; a method without a status writes neutral values."""
+    before = call.state()
+    result, after = call.run()
+    if call.is_refused(result):
+        assert after == before, f"{call.method} refused, and wrote: {what}"
+    elif call.method == "Diagnose":
+        assert result or (result, after) == clean, f"{what}"
+    elif call.method == "IsSingularity":
+        assert result is True or (result, after) == clean, f"{what}"
+    elif call.method == "AxesToConfiguration_Offset":
+        assert set(after["cd"].values()) == {0} or (result, after) == clean, f"{what}"
+    else:
+        assert (result, after) == clean, f"{call.method} answers {what}: {result} {after}"
+
+
+def test_garbage_in_one_number(twins: tuple[Twins, ...]) -> None:
+    for one in (twins[1], twins[-3]):
+        sample = one.regular[-1]
+        for method in methods_of(one.controller):
+            clean = call_of(one, one.controller, method, sample).run()
+            for name, path in real_inputs(call_of(one, one.controller, method, sample)):
+                for garbage in GARBAGE:
+                    call = call_of(one, one.controller, method, sample)
+                    values.put(call.arguments[name], path, garbage)
+                    check(call, clean, (name, path, garbage))
+
+
+def test_garbage_in_every_number(twins: tuple[Twins, ...]) -> None:
+    for one in (twins[1], twins[-3]):
+        sample = one.regular[-1]
+        for method in methods_of(one.controller):
+            clean = call_of(one, one.controller, method, sample).run()
+            for garbage in GARBAGE:
+                call = call_of(one, one.controller, method, sample)
+                for name, path in real_inputs(call):
+                    values.put(call.arguments[name], path, garbage)
+                check(call, clean, garbage)
+
+
+def test_garbage_in_what_is_written(twins: tuple[Twins, ...]) -> None:
+    """What a variable holds before it is written has no influence."""
+    for one in twins[1:2]:
+        sample = one.regular[-1]
+        for method in methods_of(one.controller):
+            clean = call_of(one, one.controller, method, sample).run()
+            for garbage in GARBAGE:
+                call = call_of(one, one.controller, method, sample)
+                for name in call.written:
+                    spoil(call.arguments[name], garbage)
+                assert call.run() == clean, method
+
+
+def spoil(value: Any, garbage: float) -> None:
+    for path in values.scalars(value):
+        if isinstance(values.element(value, path), float):
+            values.put(value, path, garbage)
+
+
+def test_garbage_in_axes_as_in_python(twins: tuple[Twins, ...]) -> None:
+    one = twins[1]
+    sample = one.regular[0]
+    for index, garbage in product(range(len(sample.axes)), GARBAGE):
+        axes = (*sample.axes[:index], garbage, *sample.axes[index + 1 :])
+        assert one.controller.forward(axes)[0] == BAD_INPUT
+        for method in FORWARD_METHODS:
+            if method.lower() in one.controller.block.routines:
+                COMPARISONS[method](one, replace(sample, axes=axes))
+
+
+def test_garbage_in_a_command_as_in_python(twins: tuple[Twins, ...]) -> None:
+    """Position, and reference; configurations open and explicit."""
+    one = twins[1]
+    sample = one.regular[0]
+    (position, rotation), own = one.robot.forward(sample.axes)
+    clean = (*position, *sample.reference)
+    for index, garbage in product(range(len(clean)), GARBAGE):
+        numbers = (*clean[:index], garbage, *clean[index + 1 :])
+        for data in (own, (0,) * len(own)):
+            command = numbers[:3], rotation, data, numbers[3:]
+            status, axes = asked(one.robot.inverse, command[:2], *command[2:])
+            assert_same(one.controller.inverse(*command), (status, axes and axes + (0.0,) * (6 - len(axes))), one, command)
+            if index < 3 and "xyz"[index] in one.mechanism.task.position:
+                assert status == BAD_INPUT, f"{one} {command}"
+
+
+def test_what_is_no_rotation(twins: tuple[Twins, ...]) -> None:
+    """Refused where the rotation is read, and never looked at elsewhere, as in Python."""
+    for one in (twins[1], twins[-1]):
+        for sample in one.regular[:5]:
+            (position, rotation), own = one.robot.forward(sample.axes)
+            scaled = tuple(tuple(2.0 * v for v in row) for row in rotation)
+            for rows in (*NO_ROTATIONS, scaled):
+                found = one.controller.inverse(position, rows, own, sample.axes)
+                assert found[0] == (BAD_INPUT if one.robot.READS_ROTATION else OK), f"{one} {rows}"
+                status, axes = asked(one.robot.inverse, (position, rows), own, sample.axes)
+                assert_same(found, (status, axes and axes + (0.0,) * (6 - len(axes))), one, rows)
+                if "getflangeorientationimagewithori" in one.controller.block.routines:
+                    assert one.controller.image_with_orientation(rows)[0] == BAD_INPUT
+
+
+def test_a_pose_that_cannot_be_assembled(twins: tuple[Twins, ...]) -> None:
+    """A joint beyond what the closure allows: a negative radius, an angle past the vertical."""
+    for one in twins[:5]:
+        for index, joint in enumerate(one.mechanism.joints):
+            if joint.domain is None:
+                continue
+            sample = one.regular[0]
+            beyond = joint.domain[0] + one.robot.parameters[joint.offset.name] - 1.0
+            axes = (*sample.axes[:index], beyond, *sample.axes[index + 1 :])
+            assert one.controller.forward(axes)[0] == IMPOSSIBLE
+            assert one.controller.is_singular(axes)
+            for method in FORWARD_METHODS:
+                if method.lower() in one.controller.block.routines:
+                    COMPARISONS[method](one, replace(sample, axes=axes))
+
+
+def test_the_largest_numbers(twins: tuple[Twins, ...]) -> None:
+    """1e9 in size is a number; nothing overflows, and the twins agree on what it means."""
+    for one in (twins[0], twins[1], twins[-1]):
+        count = len(one.mechanism.joints)
+        rng = np.random.default_rng(9)
+        for row in rng.choice((-1e9, -1e5, 0.0, 1.0, 1e9), (50, 2 * count + 3)).tolist():
+            axes, reference, position = tuple(row[:count]), tuple(row[count : 2 * count]), tuple(row[2 * count :])
+            status, answer = asked(one.robot.forward, axes)
+            found = one.controller.forward(axes)
+            assert found[0] == status
+            if status == OK:
+                assert_same(found[1][:2], tuple(answer[0]), one, axes)
+                assert found[1][2] == padded(answer[1])
+            for data in (one.robot.DEFAULT_CONFIGURATION, (0,) * len(one.robot.CONFIGURATION)):
+                status, answer = asked(one.robot.inverse, (position, NO_TURN), data, reference)
+                found = one.controller.inverse(position, NO_TURN, data, reference)
+                assert_same(found, (status, answer and answer + (0.0,) * (6 - count)), one, position, data, reference)

@@ -1,0 +1,75 @@
+"""Every limit refuses alone, on either side, and with the tolerance that the design gives it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tests.text.controller import OK, UNREACHABLE, Controller
+from tests.text.other_turns import check_other_turns
+from tests.text.samples import Sample
+from tests.text.twins import Twins
+
+WIDTH = 1.0
+"""How far the limit on the other side is."""
+BEYOND, TOLERATED = 1e-8, 1e-9
+"""How far a pose is from a limit, relative to 1 and the value; the tolerance is 1e-9 of 1 and both limits."""
+
+
+def test_every_limit_refuses_alone(twins: tuple[Twins, ...]) -> None:
+    one = twins[4]
+    tried = {joint.key for joint in one.mechanism.joints} | {quantity.name for quantity in one.mechanism.limited}
+    for name in sorted(tried):
+        chosen = [(sample, value) for sample in one.regular if (value := limited_value(one, sample, name)) is not None]
+        for sample, value in chosen[:3]:
+            beyond, tolerated = (share * (1.0 + abs(value)) for share in (BEYOND, TOLERATED))
+            for lower, upper, expected in (
+                (value - beyond, value + WIDTH, OK),
+                (value - WIDTH, value + beyond, OK),
+                (value + tolerated, value + WIDTH, OK),
+                (value - WIDTH, value - tolerated, OK),
+                (value + beyond, value + WIDTH, UNREACHABLE),
+                (value - WIDTH, value - beyond, UNREACHABLE),
+            ):
+                limits = {f"lower_{name}": lower, f"upper_{name}": upper}
+                assert status(one, sample, limits) == expected, f"{one} {sample} {limits}"
+                assert status(one, sample, limits | {"check_limits": False}) == OK
+        assert chosen, name
+
+
+def test_a_turn_that_refuses_is_told_with_the_one_inside(twins: tuple[Twins, ...]) -> None:
+    one = twins[4]
+    for sample in one.regular[:3]:
+        assert check_other_turns(one, sample) or not one.robot.PERIOD_AXES
+
+
+def test_small_limits_are_limits(twins: tuple[Twins, ...]) -> None:
+    """Only where both are 0 there is none."""
+    one = twins[0]
+    for index, joint in enumerate(one.mechanism.joints):
+        for lower, upper in ((-0.2, 0.1), (0.0, 0.3), (-0.3, 0.0)):
+            controller = Controller(one.library, one.mechanism)
+            limits = {f"lower_{joint.key}": lower, f"upper_{joint.key}": upper}
+            assert controller.initialise({**one.robot.parameters, **limits}) == OK
+            assert controller.axis_properties(index)[1:] == (False, lower, upper)
+
+
+def limited_value(one: Twins, sample: Sample, name: str) -> float | None:
+    """The value at a pose of what has a limit; None where a limit may not stand there."""
+    machine = one.machine
+    for joint, value in zip(machine.mechanism.joints, sample.axes, strict=True):
+        if joint.key == name:
+            low, high = joint.limit_range or (-1e9, 1e9)
+            return value if low + 2 * WIDTH <= value <= high - 2 * WIDTH else None
+    quantities = machine.closure.limited(machine.closure.joints(np.array([sample.axes])))[0].tolist()
+    return dict(zip((q.name for q in machine.mechanism.limited), quantities, strict=True))[name]
+
+
+def status(one: Twins, sample: Sample, limits: dict[str, float]) -> str:
+    """Of inverse kinematics for the very configuration of a pose, with other limits."""
+    controller = Controller(one.library, one.mechanism)
+    assert controller.initialise({**one.robot.parameters, **limits}) == OK
+    position, rotation, data = controller.forward(sample.axes)[1]
+    found: str = controller.inverse(position, rotation, data, sample.axes)[0]
+    reason, missing = controller.diagnose(position, rotation, data, sample.axes)
+    assert (missing > 0.0) == ("limit" in reason) == (found == UNREACHABLE)
+    return found

@@ -1,0 +1,85 @@
+"""The functions that touch the opaque matrix of the controller's library."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import pytest
+
+from tests.harness.library import Library, compile_st
+from tests.text.samples import NO_TURN
+from tests.text.units import shared_texts
+
+NUMBERS = [float(n) for n in range(1, 10)]
+ROWS = ((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (7.0, 8.0, 9.0))
+UNTOUCHED = [0.5] * 9
+FINDER = "Softkin_FindMatrixOrder.st"
+ORDERS = {"rows": "Rows", "columns": "Columns"}
+
+
+@cache
+def library(order: str, matrix_size: int) -> Library:
+    """The shared objects for a library that stores matrices in an order."""
+    return compile_st(shared_texts(), order, matrix_size)
+
+
+def matrix(made: Library, rows: tuple[tuple[float, ...], ...]) -> Any:
+    value = made.new("SM3M.SMC_Matrix3")
+    made.set_rotation(value, rows)
+    return value
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_the_order_is_found(order: str) -> None:
+    assert library(order, 72).function("Softkin_FindMatrixOrder")() == ORDERS[order]
+
+
+@pytest.mark.parametrize("size", [36, 80])
+def test_no_order_where_the_size_differs(size: int) -> None:
+    assert library("rows", size).function("Softkin_FindMatrixOrder")() == "Unknown"
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_read_and_write(order: str) -> None:
+    made = library(order, 72)
+    found = [0.0] * 9
+    assert made.function("Softkin_ReadMatrix")(m=matrix(made, ROWS), aElements=found, eOrder=ORDERS[order]) is True
+    assert found == NUMBERS
+    written = matrix(made, NO_TURN)
+    assert made.function("Softkin_WriteMatrix")(m=written, aElements=NUMBERS, eOrder=ORDERS[order]) is True
+    assert made.get_rotation(written) == ROWS
+
+
+@pytest.mark.parametrize(("size", "order"), [(72, "Unknown"), (36, "Rows"), (80, "Rows"), (80, "Columns")])
+def test_nothing_is_touched_where_the_matrix_is_not_known(size: int, order: str) -> None:
+    made = library("rows", size)
+    found, value = UNTOUCHED[:], matrix(made, ROWS)
+    assert made.function("Softkin_ReadMatrix")(m=value, aElements=found, eOrder=order) is False
+    assert made.function("Softkin_WriteMatrix")(m=value, aElements=NUMBERS[::-1], eOrder=order) is False
+    assert (found, made.get_rotation(value)) == (UNTOUCHED, ROWS)
+
+
+BROKEN = {
+    "a library that multiplies the other way round": (
+        "frLhs := rotation, frRhs := translation",
+        "frLhs := translation, frRhs := rotation",
+    ),
+    "a second function that disagrees": ("ABS(angle - 30.0)", "ABS(angle + 30.0)"),
+    "a second function that fails": ("SMC_ERROR.SMC_NO_ERROR THEN", "SMC_ERROR.SMC_TRAFO_INVALID_COUPLING THEN"),
+}
+
+
+@cache
+def misbehaving(name: str) -> Library:
+    """A changed text, because the stand-in for the library cannot misbehave."""
+    right, wrong = BROKEN[name]
+    texts = dict(shared_texts())
+    changed = texts[FINDER].replace(right, wrong)
+    assert changed != texts[FINDER]
+    return compile_st({**texts, FINDER: changed})
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_no_order_where_the_library_behaves_otherwise(name: str) -> None:
+    assert misbehaving(name).function("Softkin_FindMatrixOrder")() == "Unknown"

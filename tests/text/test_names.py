@@ -1,0 +1,94 @@
+"""Names that mean something else are refused when they are generated, with one sentence that says what to do."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from derive.__main__ import main
+from derive.description.catalogue import MECHANISMS
+from derive.description.mechanism import DescriptionError
+from derive.emit.plcopen.objects import Object, objects_of
+from derive.emit.st.names import spellings
+from derive.emit.st.reserved import clash, refuse_clashes, reserved
+from tests.harness.contract import INTERFACES
+from tests.harness.names import C_MACROS, KEYWORDS
+
+SCARA = MECHANISMS / "kin_scara2_z.py"
+REMEDY = "choose another name for the mechanism, parameter, joint or branch that it is made of"
+
+
+def block(name: str, variable: str = "x") -> tuple[Object, ...]:
+    return objects_of(f"FUNCTION_BLOCK {name}\nVAR_INPUT\n  {variable} : LREAL := 0.0;  // One\nEND_VAR\nEND_FUNCTION_BLOCK\n")
+
+
+def test_every_name_that_the_harness_refuses_is_known() -> None:
+    """Another list of the same kind, made for the harness."""
+    names = sorted(KEYWORDS | C_MACROS | set(INTERFACES))
+    assert len(names) > 150
+    assert [name for name in names if clash(name) is None or clash(name.lower()) is None] == []
+
+
+def test_temporaries_are_spelled_around_them() -> None:
+    assert spellings(("nan", "step", "heading"), ()) == {"nan": "nanValue", "step": "stepValue", "heading": "heading"}
+    assert {"nan", "step", "to", "dint"} <= reserved()
+
+
+@pytest.mark.parametrize(
+    ("objects", "message"),
+    [
+        (block("Mine", "dInt"), "a/b.st: Mine declares dInt, which is a word of IEC 61131-3"),
+        (block("Mine", "EFAULT"), "Mine declares EFAULT, which is a macro of the C compilers"),
+        (block("Mine", "trafo"), "Mine declares trafo, which is a name of the SoftMotion libraries"),
+        (block("Kin_Coupled"), "Kin_Coupled declares Kin_Coupled, which is a name of the SoftMotion libraries"),
+        (block("SMC_Robot"), "SMC_Robot declares SMC_Robot, which is a name of the SoftMotion libraries"),
+        (block("Mine", "softkin_root"), "Mine declares softkin_root, which is an object of its own"),
+    ],
+)
+def test_a_clash_is_one_sentence(objects: tuple[Object, ...], message: str) -> None:
+    shared = objects_of("FUNCTION Softkin_Root : LREAL\nVAR\n  y : LREAL;\nEND_VAR\n\ny := 1.0;\nEND_FUNCTION\n")
+    with pytest.raises(DescriptionError, match=re.escape(message)) as refusal:
+        refuse_clashes({"a/b.st": objects, "softkin/Softkin_Root.st": shared})
+    assert str(refusal.value).endswith(REMEDY) and "\n" not in str(refusal.value)
+
+
+def test_a_name_in_a_method_is_seen_too() -> None:
+    text = "FUNCTION_BLOCK Mine\nVAR\n  x : LREAL;\nEND_VAR\n\nMETHOD PUBLIC Run\nVAR\n  nan : LREAL;\nEND_VAR\n\nnan := x;\n"
+    with pytest.raises(DescriptionError, match=r"Mine\.Run declares nan, which is a macro"):
+        refuse_clashes({"a/b.st": objects_of(text + "END_METHOD\nEND_FUNCTION_BLOCK\n")})
+
+
+def test_two_objects_of_one_name() -> None:
+    with pytest.raises(DescriptionError, match=r"b\.st: the name MINE is taken by a\.st"):
+        refuse_clashes({"a.st": block("Mine"), "b.st": block("MINE")})
+
+
+
+
+def generated(tmp_path: Path, capsys: pytest.CaptureFixture[str], **changes: str) -> str:
+    """What `generate` says of a description in which words are replaced."""
+    text = SCARA.read_text(encoding="utf-8")
+    for old, new in changes.items():
+        assert re.search(rf"\b{old}\b", text), old
+        text = re.sub(rf"\b{old}\b", new, text)
+    folder = tmp_path / "mechanisms"
+    folder.mkdir()
+    (folder / "mine.py").write_text(text, encoding="utf-8")
+    assert main(["generate", "--output", str(tmp_path / "out"), "--mechanisms", str(folder)]) == 1
+    assert not (tmp_path / "out").exists()
+    return capsys.readouterr().err
+
+
+def test_a_mechanism_with_the_name_of_a_block_of_softmotion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    said = generated(tmp_path, capsys, CODESYS="SINSEGYE")
+    wanted = "scara/Kin_Scara2_Z.st: Kin_Scara2_Z declares Kin_Scara2_Z, which is a name of the SoftMotion libraries"
+    assert said == f"error: {wanted}: {REMEDY}\n"
+
+
+def test_a_parameter_whose_input_is_a_keyword(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A length `int` is the input dInt, and DINT is a type."""
+    said = generated(tmp_path, capsys, arm_length_1="int")
+    assert said.startswith("error: scara/Softkin_Scara2_Z.st: Softkin_Scara2_Z declares dInt, which is a word of IEC 61131-3")
+    assert said.count("\n") == 1

@@ -1,0 +1,82 @@
+"""Before Initialize, and after one that refused, no method works: a status, and outputs untouched."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from tests.text.any_method import Call, call_of, methods_of
+from tests.text.controller import NOT_INITIALIZED, OK, Controller
+from tests.text.twins import Twins
+
+State = dict[str, dict[Any, Any]]
+INDEPENDENT = {
+    "GetKinematicsName",
+    "GetConfigurationDataSize",
+    "GetDefaultConfigurationData",
+    "CPConnectible",
+    "ActivateAutomaticRotaryPeriods",
+    "IsConfigSingular",
+    "GetPeriods",
+    "AxisSettings",
+}
+"""Methods that need no parameter, and work as ever: AxisSettings keeps what it is given for Initialize."""
+
+
+def is_free(result: Any, before: State, after: State) -> bool:
+    return after["props"]["limits", "xUnlimited"] is True
+
+
+def is_unknown(result: Any, before: State, after: State) -> bool:
+    return after["oriInfo"] == before["oriInfo"] | {("dof",): "three"}
+
+
+def is_automatic(result: Any, before: State, after: State) -> bool:
+    return set(after["cd"].values()) == {0}
+
+
+NEUTRAL: dict[str, Callable[[Any, State, State], bool]] = {
+    "IsInitialized": lambda result, before, after: result is False,
+    "Diagnose": lambda result, before, after: result == "not initialized",
+    "IsSingularity": lambda result, before, after: result is True,
+    "GetAxisProperties": is_free,
+    "GetOrientationImage": is_unknown,
+    "AxesToConfiguration_Offset": is_automatic,
+}
+"""What methods without a status answer."""
+
+
+def fresh(one: Twins) -> Controller:
+    return Controller(one.library, one.mechanism)
+
+
+def refused(one: Twins) -> Controller:
+    """A block that was initialised, and then refused other inputs."""
+    controller = fresh(one)
+    assert controller.initialise(one.robot.parameters) == OK
+    assert controller.initialise({"offset_" + one.mechanism.joints[-1].key: math.inf}) == NOT_INITIALIZED
+    return controller
+
+
+@pytest.mark.parametrize("made", [fresh, refused])
+def test_no_method_works(twins: tuple[Twins, ...], made: Callable[[Twins], Controller]) -> None:
+    one = twins[-1]
+    controller = made(one)
+    for method in methods_of(controller):
+        call = call_of(one, controller, method, one.regular[0])
+        before = call.state()
+        result, after = call.run()
+        if method in INDEPENDENT:
+            assert (result, after) == working(one, call, method)
+        elif call.has_status:
+            assert (result, after) == (NOT_INITIALIZED, before), method
+        else:
+            assert NEUTRAL[method](result, before, after), f"{method} {result} {after}"
+
+
+def working(one: Twins, call: Call, method: str) -> tuple[Any, State]:
+    """What the same method of an initialised block answers."""
+    return call_of(one, one.controller, method, one.regular[0]).run()

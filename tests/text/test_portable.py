@@ -1,0 +1,96 @@
+"""Every emitted object keeps to the portable subset; and the lint that says so sees every way not to."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import pytest
+
+from derive.__main__ import OUTPUT
+from tests.harness import ast, stubs
+from tests.harness.contract import INTERFACES
+from tests.harness.parse import parse
+from tests.harness.portable import Violation, violations
+
+FILES = {str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))}
+_OWN = parse(FILES["softkin/Softkin_MatrixOrder.st"], "Softkin_MatrixOrder")
+LIBRARY = [declared for space, text in stubs.texts(31).items() for declared in parse(text, space)]
+
+
+@lru_cache
+def enumerators() -> dict[str, str]:
+    """The enumerators of the libraries and of our own types, with the type that each belongs to."""
+    types = [one for one in (*LIBRARY, *_OWN) if isinstance(one, ast.Enumeration)]
+    return {name: one.name for one in types for name, _ in one.members}
+
+
+@lru_cache
+def library_names() -> frozenset[str]:
+    """What a variable must not hide: namespaces, types and functions of the libraries, in small letters."""
+    names = {one.name for one in LIBRARY} | set(INTERFACES) | set(stubs.texts(31)) | {"TRAFO", "SM3M", "SM3_Error"}
+    own = {file.split("/")[1].removesuffix(".st") for file in FILES}
+    return frozenset(name.lower() for name in names | own)
+
+
+def lint(text: str) -> list[Violation]:
+    return violations(text, enumerators(), set(library_names()))
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_every_object_is_portable(file: str) -> None:
+    assert lint(FILES[file]) == []
+
+
+def test_the_lint_knows_enough() -> None:
+    assert {"Unknown", "Rotary", "zero", "SMC_NO_ERROR"} <= set(enumerators())
+    assert {"trafo", "axispos_ref", "smc_frame", "softkin_root", "ismkinperiodhandling"} <= library_names()
+
+
+_BODY = "FUNCTION F : LREAL\nVAR\n  x : LREAL;\n  y : LREAL;\nEND_VAR\n\nx := y;\nF := x;\nEND_FUNCTION\n"
+
+PLANTED = {
+    "ATAN2": ("x := y;", "x := ATAN2(y, y);", "ATAN2 is not portable"),
+    "FLOOR": ("x := y;", "x := FLOOR(y);", "FLOOR is not portable"),
+    "EXPT": ("x := y;", "x := EXPT(y, 2);", "EXPT is not portable"),
+    "a power": ("x := y;", "x := y**2;", "** is not portable"),
+    "AND_THEN": ("x := y;", "IF x > y AND_THEN x > 0.0 THEN", "AND_THEN is not portable"),
+    "CONTINUE": ("x := y;", "CONTINUE;", "CONTINUE is not portable"),
+    "a loop without an end": ("x := y;", "WHILE x > y DO\nEND_WHILE", "WHILE is not portable"),
+    "a reference": ("x : LREAL;", "x : REFERENCE TO LREAL;", "REFERENCE is not portable"),
+    "a variable with memory": ("VAR\n", "VAR_STAT\n", "VAR_STAT is not portable"),
+    "an address": ("x : LREAL;", "x AT %MD0 : LREAL;", "AT is not portable"),
+    "a pointer elsewhere": ("x : LREAL;", "x : POINTER TO LREAL;", "POINTER outside the helpers"),
+    "a dereference elsewhere": ("x := y;", "x := y^;", "^ outside the helpers"),
+    "an address taken elsewhere": ("x := y;", "x := ADR(y);", "ADR outside the helpers"),
+    "small letters": ("x := y;", "if x > y THEN", "capitals"),
+    "two underscores": ("x := y;", "x := y__z;", "two underscores"),
+    "a typed literal": ("x := y;", "x := LREAL#1.0;", "typed literal"),
+    "an exponent without a point": ("x := y;", "x := 1E9;", "no point"),
+    "a number in groups": ("x := y;", "x := 1_000.0;", "underscore"),
+    "a bare error": ("x := y;", "x := SMC_NO_ERROR;", "without its type SMC_ERROR"),
+    "a bare enumerator": ("x := y;", "IF order = Unknown THEN", "without its type Softkin_MatrixOrder"),
+    "an enumerator of another type": ("x := y;", "x := Softkin_MatrixOrder.zero;", "without its type OrientationDOF"),
+    "a bound that is a name": ("x : LREAL;", "x : ARRAY[0..LAST] OF LREAL;", "no literals"),
+    "a structured initial value": ("x : LREAL;", "x : TRAFO.AXISLIMITS := (dLower := 1.0);", "structured initial value"),
+    "an array of initial values": ("x : LREAL;", "x : ARRAY[0..1] OF LREAL := [1.0, 2.0];", "structured initial value"),
+    "a nested comment": ("x := y;", "(* a (* b *) *)", "a comment in a comment"),
+    "a comment behind a comment": ("x := y;", "x := y; // a (* b", "a comment in a comment"),
+    "a macro of C": ("  y : LREAL;", "  nan : LREAL;", "nan is a name"),
+    "a word as a name": ("  y : LREAL;", "  METHOD : LREAL;", "METHOD is a name"),
+    "a namespace as a name": ("  y : LREAL;", "  trafo : LREAL;", "trafo is a name"),
+    "a type as a name": ("  y : LREAL;", "  Axis_Type : LREAL;", "Axis_Type is a name"),
+    "a shared function as a name": ("  y : LREAL;", "  softkin_root : LREAL;", "softkin_root is a name"),
+    "a letter that is not ASCII": ("x := y;", "x := y;  // größer", "not ASCII"),
+}
+
+
+@pytest.mark.parametrize("case", PLANTED)
+def test_the_lint_sees(case: str) -> None:
+    old, new, why = PLANTED[case]
+    assert old in _BODY and lint(_BODY) == []
+    found = lint(_BODY.replace(old, new, 1))
+    assert any(why in one.why for one in found), found
+
+
+def test_a_violation_names_its_line() -> None:
+    assert [one.line for one in lint(_BODY.replace("x := y;", "x := FLOOR(y);"))] == [7]

@@ -1,0 +1,307 @@
+"""The functions that all units share, each alone, against the reference semantics of the programs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import example, given
+from hypothesis import strategies as st
+from softkin import _root
+from softkin._configuration import turn_inside
+from softkin._rotation import made_rotation
+
+from derive.ir.interpret import evaluate
+from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root
+from derive.ir.program import Status
+from derive.ir.symbols import real
+from tests import orthonormal
+from tests.harness.library import StFault
+from tests.text.units import compiled_shared
+
+LIBRARY = compiled_shared()
+HUGE = 1e300
+SIZES = st.floats(-HUGE, HUGE) | st.floats(-1e9, 1e9) | st.sampled_from([0.0, -0.0, 5e-324, -5e-324, 1.0, -1.0])
+DEGREES = st.floats(-1e9, 1e9) | st.integers(-2000, 2000).map(lambda n: 90.0 * n)
+ANGLES = st.floats(-1e4, 1e4) | st.integers(-40, 40).map(lambda n: n * math.pi / 2)
+NO_NUMBERS = (math.nan, math.inf, -math.inf, 1e300, -1e300, 1.0000001e9, -1.0000001e9)
+ROUNDING = 4.5e-16
+"""Two units in the last place."""
+
+
+def reference(function: type[sp.Function], *arguments: float) -> float:
+    """The value of a primitive, as the programs define it."""
+    symbols = [real(f"argument_{i}") for i, _ in enumerate(arguments)]
+    return float(evaluate(function(*symbols), {s.name: np.asarray(v) for s, v in zip(symbols, arguments, strict=True)}))
+
+
+@given(y=SIZES, x=SIZES)
+@example(-0.0, -1.0)
+@example(0.0, -0.0)
+@example(-5e-324, -1.0)
+@example(HUGE, 5e-324)
+def test_atan2(y: float, x: float) -> None:
+    found = LIBRARY.function("Softkin_Atan2")(y, x)
+    assert found == pytest.approx(reference(Atan2, y, x), rel=ROUNDING, abs=5e-324)
+    assert -math.pi <= found <= math.pi
+
+
+def test_atan2_in_every_quadrant() -> None:
+    quarter = math.pi / 4
+    for y, x, eighths in ((0, 1, 0), (1, 1, 1), (1, 0, 2), (1, -1, 3), (0, -1, 4), (-1, -1, -3), (-1, 0, -2), (-1, 1, -1)):
+        assert LIBRARY.function("Softkin_Atan2")(float(y), float(x)) == pytest.approx(eighths * quarter, rel=ROUNDING)
+    assert LIBRARY.function("Softkin_Atan2")(0.0, 0.0) == 0.0
+
+
+@given(value=SIZES)
+def test_root(value: float) -> None:
+    assert LIBRARY.function("Softkin_Root")(value) == reference(Root, value)
+
+
+@given(value=DEGREES, centre=DEGREES)
+@example(180.0, 0.0)
+@example(-180.0, 0.0)
+@example(180.0 - 1e-9, 0.0)
+@example(180.0 - 1.1e-9, 0.0)
+@example(540.0, 360.0)
+def test_nearest_period(value: float, centre: float) -> None:
+    assert LIBRARY.function("Softkin_NearestPeriod")(value, centre) == reference(NearestPeriod, value, centre)
+
+
+@given(angle=ANGLES, centre=ANGLES, half=st.floats(0.0, math.pi))
+def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
+    expected = reference(NearestOnArc, angle, centre, half)
+    assert LIBRARY.function("Softkin_NearestOnArc")(angle, centre, half) == pytest.approx(expected, rel=1e-14, abs=1e-14)
+
+
+@given(value=st.floats(-2e9, 2e9) | st.integers(-(2**31), 2**31).map(float))
+@example(-0.5)
+@example(-1e-300)
+@example(2e9)
+@example(-2e9)
+def test_floor(value: float) -> None:
+    if abs(value) <= 2e9:
+        assert LIBRARY.function("Softkin_Floor")(value) == math.floor(value)
+
+
+@given(value=st.floats(2.1e9, HUGE) | st.floats(-HUGE, -2.1e9))
+@example(math.nextafter(2e9, math.inf))
+def test_floor_leaves_what_no_integer_holds(value: float) -> None:
+    assert LIBRARY.function("Softkin_Floor")(value) == value
+
+
+@pytest.mark.parametrize("value", NO_NUMBERS)
+def test_what_is_no_number(value: float) -> None:
+    assert LIBRARY.function("Softkin_IsNumber")(value) is False
+
+
+@given(value=st.floats(-1e9, 1e9))
+@example(1e9)
+@example(-1e9)
+def test_what_is_a_number(value: float) -> None:
+    assert LIBRARY.function("Softkin_IsNumber")(value) is True
+
+
+@given(axis=st.floats(-1e9, 1e9) | st.integers(-300, 300).map(lambda n: 180.0 * n))
+@example(180.0 - 1e-9)
+@example(-180.0 - 1e-9)
+@example(math.nextafter(180.0, 0.0))
+@example(360.0 * 127 - 180.0 - 1e-3)
+@example(360.0 * 127 - 180.0)
+@example(-180.0 - 360.0 * 127)
+@example(-180.0 - 360.0 * 127 - 1e-3)
+def test_period_number(axis: float) -> None:
+    turn = math.floor((axis + (180.0 + 1e-9)) / 360.0)
+    number = turn + 1 if turn >= 0 else turn
+    assert LIBRARY.function("Softkin_PeriodNumber")(axis) == (number if abs(number) <= 127 else 0)
+
+
+@given(axis=st.floats(-5000.0, 5000.0), low=st.floats(-2000.0, 2000.0), width=st.floats(0.1, 2000.0))
+@example(181.0, -180.0, 360.0)
+@example(-180.5, -180.0, 360.0)
+@example(100.0, 185.0, 5.0)
+@example(1e5, -1e5, 1.5e5)
+@example(-1e5, -9e4, 1.5e5)
+@example(3e5, 2e5, 8e4)
+@example(-3e5, -2.8e5, 8e4)
+def test_the_turn_inside(axis: float, low: float, width: float) -> None:
+    """Of the turns that a byte can name, the one inside that is nearest to the end which the axis is beyond."""
+    high = low + width
+    if low <= axis <= high:
+        return
+    numbers = [n for n in range(-127, 128) if n != 0]
+    turns = {n: axis + 360.0 * round((_centre(n) - axis) / 360.0) for n in numbers}
+    inside = [n for n, value in turns.items() if low <= value <= high]
+    edges = ((value, edge) for n, value in turns.items() for edge in (low, high, _centre(n) - 180.0, _centre(n) + 180.0))
+    if any(abs(value - edge) < 1e-6 for value, edge in edges):
+        return  # where rounding decides
+    expected = (max(inside) if axis > high else min(inside)) if inside else 0
+    assert LIBRARY.function("Softkin_TurnInside")(axis, low, high) == turn_inside(axis, low, high) == expected
+
+
+_NUMBERS = st.floats(-10.0, 10.0)
+
+
+@given(ends=st.tuples(_NUMBERS, _NUMBERS, _NUMBERS, _NUMBERS), width=st.floats(0.01, 2.0))
+@example((1.0, -4.0, 1.0, 4.0), 1.0)
+@example((1.0, -1.0, 1.0, 1.0), 1.0)
+@example((-1.0, 4.0, -1.0, -4.0), 1.0)
+@example((1.0, -1.0, 9.0, 1.0), 1.0)
+@example((1.0, 2.0, 1.0, 2.0), 1.0)
+@example((1.0, -9.0, -1.0, -9.0), 1.0)
+@example((1.0, 9.0, 1.0, 9.0), 1.0)
+@example((-1.0, -9.0, -1.0, -9.0), 1.0)
+@example((1.0, 9.0, -1.0, 9.0), 1.0)
+@example((0.1, -9.0, 1.0, -9.0), 1.0)
+@example((1.0, 1.0, 2.0, 1.0), 1.0)
+@example((1.0, 0.0, 2.0, 0.0), 1.0)
+def test_what_hides_two_roots(ends: tuple[float, float, float, float], width: float) -> None:
+    """Where the search cuts a cell: as on plain numbers in Python."""
+    assert LIBRARY.function("Softkin_TangentsMeet")(*ends, width) == pytest.approx(_root._between(*ends, width), rel=1e-12)
+    assert LIBRARY.function("Softkin_ComesBack")(*ends, width) == _root._comes_back(*ends, width)
+    assert LIBRARY.function("Softkin_HidesRoots")(*ends, width) == _root._hides_roots(*ends, width)
+
+
+def _centre(number: int) -> float:
+    return 360.0 * (number - 1 if number > 0 else number)
+
+
+def test_period_numbers_and_bytes() -> None:
+    """Each of the 255 numbers that a byte holds, and no other."""
+    to_byte, of_byte = LIBRARY.function("Softkin_ByteOfPeriod"), LIBRARY.function("Softkin_PeriodOfByte")
+    for number in range(-127, 128):
+        assert to_byte(number) == number % 256
+        assert of_byte(to_byte(number)) == number
+    for number in (-32768, -129, -128, 128, 129, 255, 256, 32767):
+        assert to_byte(number) == 0
+    assert [of_byte(byte) for byte in range(256)] == [*range(128), *range(-128, 0)]
+
+
+@given(margin=st.floats(-1e300, 1e300))
+@example(1e-11)
+@example(-1e-11)
+@example(1.0000001e-11)
+@example(-1.0000001e-11)
+@example(0.0)
+def test_branch_byte(margin: float) -> None:
+    expected = 3 if abs(margin) <= 1e-11 else (1 if margin > 0 else 2)
+    assert LIBRARY.function("Softkin_BranchByte")(margin) == expected
+
+
+def test_which_bytes_admit_a_branch() -> None:
+    admits = LIBRARY.function("Softkin_AdmitsBranch")
+    for byte in range(256):
+        assert [admits(byte, branch) for branch in (1, 2)] == [byte in (0, 3, 1), byte in (0, 3, 2)]
+
+
+def test_the_harness_would_notice_a_bad_operation() -> None:
+    """Without its guard, a function faults: the tests above can fail."""
+    with pytest.raises(StFault):
+        LIBRARY.function("Softkin_Atan2")(math.nan, 1.0)
+
+
+def solved(matrix: np.ndarray, right: np.ndarray) -> tuple[float, np.ndarray]:
+    """The determinant, and the solution: arrays of six rows, whatever lies beyond the equations."""
+    size, columns = right.shape
+    tables = [[[math.nan] * 6 for _ in range(6)] for _ in range(2)]
+    for table, filled in zip(tables, (matrix, right), strict=True):
+        for row, values in enumerate(filled.tolist()):
+            table[row][: len(values)] = values
+    flat = [[value for row in table for value in row] for table in tables]
+    determinant = LIBRARY.function("Softkin_Solve")(*flat, size, columns)
+    return determinant, np.array(flat[1]).reshape(6, 6)[:size, :columns]
+
+
+@pytest.mark.parametrize("size", range(1, 7))
+def test_solve(size: int) -> None:
+    rng = np.random.default_rng(size)
+    for columns in (0, 1, 6):
+        for _ in range(20):
+            matrix, right = rng.normal(size=(size, size)), rng.normal(size=(size, columns))
+            determinant, solution = solved(matrix, right)
+            assert determinant == pytest.approx(np.linalg.det(matrix), rel=1e-9, abs=1e-12)
+            np.testing.assert_allclose(matrix @ solution, right, atol=1e-8)
+
+
+def test_solve_where_the_first_pivot_is_zero() -> None:
+    determinant, solution = solved(np.array([[0.0, 2.0], [4.0, 1.0]]), np.array([[2.0], [9.0]]))
+    assert determinant == -8.0
+    assert solution.tolist() == [[2.0], [1.0]]
+
+
+@pytest.mark.parametrize("matrix", [np.zeros((3, 3)), np.ones((3, 3))])
+def test_solve_where_nothing_solves(matrix: np.ndarray) -> None:
+    determinant, solution = solved(matrix, np.ones((3, 2)))
+    assert determinant == 0.0
+    assert not solution.any()
+
+
+def test_solve_what_is_no_number() -> None:
+    for wrong in (math.nan, math.inf, -math.inf, 1e31):
+        for k in range(2):
+            tables = np.array([[2.0, 1.0], [1.0, -3.0]]), np.array([[1.0], [2.0]])
+            tables[k][1, 0] = wrong
+            determinant, solution = solved(*tables)
+            assert determinant == 0.0
+            assert not solution.any()
+
+
+def test_make_rotation() -> None:
+    """Turned frames are one and stay as they are; what is one to a few digits is made one, and then stays as it is."""
+    make = LIBRARY.function("Softkin_MakeRotation")
+    for turned in rotations(20):
+        exact = turned.ravel().tolist()
+        assert make(exact) and exact == turned.ravel().tolist()
+        for off in orthonormal.slightly_off(turned):
+            found = off.ravel().tolist()
+            assert make(found)
+            np.testing.assert_allclose(np.reshape(found, (3, 3)), orthonormal.repaired(off), rtol=0, atol=1e-15)
+            again = found[:]
+            assert make(again) and again == found
+
+
+def test_make_rotation_refuses_what_is_none() -> None:
+    """Untouched where it is stretched, sheared or mirrored, or holds no numbers; the reason and the amount as in Python."""
+    make, reason = (LIBRARY.function(f"Softkin_{name}") for name in ("MakeRotation", "RotationReason"))
+    for turned in rotations(5):
+        wrong = [*orthonormal.too_far_off(turned), *orthonormal.mirrored(turned), 0.0 * turned, 1e9 * turned]
+        for k in range(9):
+            for number in NO_NUMBERS:
+                wrong.append(turned.copy())
+                wrong[-1].flat[k] = number
+        for off in wrong:
+            found = off.ravel().tolist()
+            is_one, outputs = make.with_outputs(found)
+            expected = made_rotation(tuple(map(tuple, off.tolist())))
+            assert not is_one and repr(found) == repr(off.ravel().tolist())
+            assert (reason(outputs["iReason"]), outputs["dMissing"]) == (expected.reason, expected.missing)
+    assert reason(0) == ""
+
+
+def test_relative_rotation() -> None:
+    """What the base sees; untouched where one of the two is no rotation."""
+    relative = LIBRARY.function("Softkin_RelativeRotation")
+    turned = rotations(20)
+    for base, rotation in zip(turned, reversed(turned), strict=True):
+        found = [7.0] * 9
+        assert relative(found, base.ravel().tolist(), rotation.ravel().tolist())
+        np.testing.assert_allclose(np.reshape(found, (3, 3)), base.T @ rotation, atol=1e-15)
+        for one, other in ((2.0 * base, rotation), (base, 2.0 * rotation)):
+            found = [7.0] * 9
+            assert not relative(found, one.ravel().tolist(), other.ravel().tolist())
+            assert found == [7.0] * 9
+
+
+def rotations(count: int) -> list[np.ndarray]:
+    rng = np.random.default_rng(3)
+    return [q * np.sign(np.linalg.det(q)) for q in (np.linalg.qr(rng.normal(size=(3, 3)))[0] for _ in range(count))]
+
+
+def test_the_number_of_an_answer() -> None:
+    """0 to 5 for what our blocks answer, -1 for any other."""
+    number = LIBRARY.function("Softkin_StatusNumber")
+    answers = [status.value for status in Status]
+    assert [number(answer) for answer in answers] == list(range(len(answers)))
+    assert number("SMC_MODULO_AXIS_FOR_NON_ROTARY_JOINT") == -1

@@ -1,0 +1,152 @@
+"""Where branches meet and angles are free, and close to there, the twins still answer the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+
+from tests.catalogue.machines import bare_machine
+from tests.catalogue.test_offset import on_the_axis
+from tests.text.comparisons import COMPARISONS, assert_same_pose
+from tests.text.controller import OK
+from tests.text.samples import NO_TURN, Sample, coinciding, near
+from tests.text.twins import Twins, twins_from
+
+MACHINES = ("equal", "random 1")
+"""With equal links every singular pose exists; with random offsets none of them is at a round number."""
+METHODS = ("AxesToCartesian", "CartesianToAxes", "AxesToOrientation", "IsSingularity", "Jacobian")
+OFFSET_METHODS = ("AxesToConfiguration_Offset", "CartesianToAxes_Offset")
+FEW = 12
+NEARLY = 1e-3
+EVERY = 7
+"""The share of the grid at which the slower comparisons are made."""
+
+
+@pytest.mark.parametrize("label", MACHINES)
+def test_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
+    (one,) = (t for t in twins if t.machine.label == label)
+    assert len(one.grid) >= 9
+    for sample in one.grid if label == "equal" else one.grid[::3]:
+        for method in offered(one, METHODS):
+            COMPARISONS[method](one, sample)
+
+
+@pytest.mark.parametrize("label", MACHINES)
+def test_near_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
+    (one,) = (t for t in twins if t.machine.label == label)
+    for sample in near(one.grid[::EVERY]):
+        for method in offered(one, METHODS):
+            COMPARISONS[method](one, sample)
+
+
+@pytest.mark.parametrize("label", MACHINES)
+def test_a_point_off_the_flange_at_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
+    (one,) = (t for t in twins if t.machine.label == label)
+    for sample in (*one.grid[::EVERY], *near(one.grid[::EVERY])):
+        for method in offered(one, OFFSET_METHODS):
+            COMPARISONS[method](one, sample)
+
+
+def test_singularities_that_coincide(twins: tuple[Twins, ...]) -> None:
+    """Wrist on axis 1, elbow stretched or folded, wrist straight: several at once, exactly and nearly."""
+    if not twins[1].machine.is_spatial or not twins[1].robot.BRANCHES:
+        return
+    for one in (twins[1], twins_from(bare_machine(twins[1].mechanism))):
+        for sample in coinciding(one.machine):
+            for method in ("AxesToCartesian", "CartesianToAxes"):
+                COMPARISONS[method](one, sample)
+
+
+def offered(one: Twins, methods: tuple[str, ...]) -> list[str]:
+    """Those that the block has."""
+    return [method for method in methods if method.lower() in one.controller.block.routines]
+
+
+def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(twins: tuple[Twins, ...]) -> None:
+    """The effective link of the offset interface is then too short to have a direction."""
+    for one in twins:
+        if "cartesiantoaxes_offset" not in one.controller.block.routines:
+            continue
+        for sample in one.regular[:5]:
+            for offset in fixed_points(one, sample):
+                COMPARISONS["CartesianToAxes_Offset"](one, replace(sample, offset=offset))
+
+
+def fixed_points(one: Twins, sample: Sample) -> Iterator[tuple[float, ...]]:
+    """For every rotary axis, the point of the flange about which it turns the flange."""
+    jacobian, rotation = one.robot.jacobian(sample.axes), one.robot.orientation(sample.axes)
+    for index, joint in enumerate(one.mechanism.joints):
+        if joint.is_angle and not one.machine.is_spatial:
+            arm = (-jacobian[1][index], jacobian[0][index], 0.0)
+            yield tuple(sum(row[i] * v for row, v in zip(rotation, arm, strict=True)) for i in range(3))
+        elif joint.is_angle and one.mechanism.chain is not None:
+            yield tuple(on_the_axis(one.machine, np.array([sample.axes]), index)[0].tolist())
+
+
+def test_a_tie_goes_to_the_first_branch(twins: tuple[Twins, ...]) -> None:
+    """A point straight ahead, and a reference that is as far from one solution as from its mirror image."""
+    one = twins[0]
+    if not one.robot.BRANCHES or one.machine.is_spatial:
+        return
+    count, size = len(one.mechanism.joints), len(one.robot.CONFIGURATION)
+    point, nothing = (0.8 * one.machine.reach, 0.0, 0.0), (0.0,) * count
+    first, opened = (1,) + (0,) * (size - 1), (0,) * size
+    solvers = [partial(one.controller.inverse, point, NO_TURN)]
+    if "cartesiantoaxes_offset" in one.controller.block.routines:
+        solvers.append(partial(one.controller.inverse_offset, point, (0.0, 0.0, 0.0)))
+    for solve in solvers:
+        assert solve(first, nothing)[0] == OK
+        assert solve(first, nothing) == solve(opened, nothing) != solve((2, *first[1:]), nothing)
+
+
+def test_where_branches_coincide_the_first_answers(twins: tuple[Twins, ...]) -> None:
+    """They are equally far from any reference."""
+    one = twins[1]
+    if not one.robot.BRANCHES:
+        return
+    periods = (0,) * len(one.robot.PERIOD_AXES)
+    samples = [s for s in singular_samples(one) if one.controller.forward(s.axes)[0] == OK and 3 in branches_of(one, s)]
+    compared = 0
+    for sample in samples[:: max(1, len(samples) // FEW)]:
+        written = branches_of(one, sample)
+        position, rotation, _ = one.controller.forward(sample.axes)[1]
+        first = tuple(1 if byte == 3 else byte for byte in written)
+        opened = one.controller.inverse(position, rotation, written + periods, sample.axes)
+        assert opened[0] == OK
+        if written.count(3) == 1:
+            found = one.controller.inverse(position, rotation, first + periods, sample.axes)
+            if nearly_singular(one, sample) == 1:
+                assert opened == found
+                compared += 1
+            else:  # what rounding leaves of one root decides half of the digits of the other
+                assert_same_pose(one, opened, found, sample)
+    assert compared
+
+
+def nearly_singular(one: Twins, sample: Sample) -> int:
+    """How many margins nearly vanish."""
+    return sum(abs(margin) < NEARLY for margin in one.robot.singularity(sample.axes).margins.values())
+
+
+def singular_samples(one: Twins) -> tuple[Sample, ...]:
+    """Right angles; of an arm in space, whose elbow stretches at any angle, what is singular by its description too."""
+    has_loci = one.machine.is_spatial and one.robot.BRANCHES > 0
+    return (*one.grid, *coinciding(one.machine)) if has_loci else one.grid
+
+
+def branches_of(one: Twins, sample: Sample) -> tuple[int, ...]:
+    """The branch bytes that forward kinematics writes."""
+    data: tuple[int, ...] = one.controller.forward(sample.axes)[1][2]
+    return data[: one.robot.BRANCHES]
+
+
+def test_the_grid_has_singular_poses(twins: tuple[Twins, ...]) -> None:
+    """A mechanism with margins is singular somewhere on the grid, and not everywhere."""
+    (equal,) = (t for t in twins if t.machine.label == "equal")
+    found = [equal.controller.is_singular(sample.axes) for sample in singular_samples(equal)]
+    assert any(found) == bool(equal.robot.MARGINS)
+    assert not all(found)

@@ -1,0 +1,69 @@
+"""Twins: one machine as a function block and as a Python object."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import softkin
+
+from derive.description.mechanism import Mechanism
+from tests.catalogue.machines import MECHANISMS, Machine, machines_of
+from tests.harness.library import Library
+from tests.text.controller import OK, Controller
+from tests.text.limits import limited_machines
+from tests.text.samples import Sample, grid, regular
+from tests.text.units import compiled
+
+__all__ = ["MECHANISMS", "Twins", "twins_of"]
+
+
+@dataclass(frozen=True)
+class Twins:
+    """A machine, and its two implementations."""
+
+    machine: Machine
+    controller: Controller
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The description."""
+        return self.machine.mechanism
+
+    @property
+    def robot(self) -> softkin.Mechanism:
+        """The machine in Python."""
+        return self.machine.robot
+
+    @property
+    def library(self) -> Library:
+        """The compiled unit."""
+        return self.controller.library
+
+    @cached_property
+    def regular(self) -> tuple[Sample, ...]:
+        """Random samples away from singular poses."""
+        return regular(self.machine)
+
+    @cached_property
+    def grid(self) -> tuple[Sample, ...]:
+        """All joints at multiples of a quarter turn."""
+        return grid(self.machine)
+
+    def __str__(self) -> str:
+        """What to say where they differ."""
+        return f"{self.mechanism.block_name}, {self.machine.label}: {dict(self.machine.given)}"
+
+
+@cache
+def twins_of(mechanism: Mechanism, order: str = "rows") -> tuple[Twins, ...]:
+    """Every machine of a mechanism twice, with limits and without."""
+    machines = (*machines_of(mechanism), *limited_machines(mechanism))
+    return tuple(twins_from(one, order) for one in machines)
+
+
+def twins_from(one: Machine, order: str = "rows") -> Twins:
+    """One machine twice."""
+    controller = Controller(compiled(one.mechanism, order), one.mechanism)
+    assert controller.initialise(one.robot.parameters) == OK
+    return Twins(one, controller)

@@ -1,0 +1,54 @@
+"""The emitted units: their texts, and each compiled together with the objects that all share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+from derive.description.mechanism import Mechanism
+from tests.harness.library import Library, compile_st
+
+FOLDER = Path(__file__).resolve().parents[2] / "generated" / "st"
+SHARED = "softkin"
+"""The folder of the objects that all units share."""
+NO_UNITS = (SHARED, "selftest")
+"""The folders whose objects are no kinematics."""
+
+
+@cache
+def shared_texts() -> Mapping[str, str]:
+    """The objects that all units share, by file."""
+    return {path.name: path.read_text(encoding="utf-8") for path in sorted((FOLDER / SHARED).glob("*.st"))}
+
+
+def unit_paths() -> list[Path]:
+    """The files of all units."""
+    return [path for path in sorted(FOLDER.glob("*/*.st")) if path.parent.name not in NO_UNITS]
+
+
+def file_of(mechanism: Mechanism) -> str:
+    """The file of a mechanism's unit."""
+    return f"{mechanism.block_name}.st"
+
+
+def text_of(mechanism: Mechanism) -> str:
+    """The text of a mechanism's unit."""
+    return (FOLDER / mechanism.family / file_of(mechanism)).read_text(encoding="utf-8")
+
+
+def compiled(mechanism: Mechanism, order: str = "rows", matrix_size: int = 72, max_config_data: int = 31) -> Library:
+    """A mechanism's unit, ready to run; compiled once for all tests."""
+    return compiled_text(file_of(mechanism), text_of(mechanism), order, matrix_size, max_config_data)
+
+
+@cache
+def compiled_text(file: str, text: str, order: str = "rows", matrix_size: int = 72, max_config_data: int = 31) -> Library:
+    """A text, compiled together with the shared objects."""
+    return compile_st({**shared_texts(), file: text}, order, matrix_size, max_config_data)
+
+
+@cache
+def compiled_shared() -> Library:
+    """The shared objects alone."""
+    return compile_st(shared_texts())

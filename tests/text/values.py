@@ -1,0 +1,139 @@
+"""Values of the controller's types: made from plain numbers, read back, and filled with what means nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
+from math import nan
+from typing import Any
+
+from tests.harness.library import Library
+from tests.harness.runtime import StructValue
+
+AXES = 6
+"""The entries of AXISPOS_REF."""
+MEANINGLESS = -4711.5
+"""What stands in a real variable before a method is called."""
+MEANINGLESS_BYTE = 0xAB
+AXES_TYPE, BYTES_TYPE, IMAGE_TYPE = "TRAFO.AXISPOS_REF", "TRAFO.CONFIGDATA", "TRAFO.OrientationSpace"
+PROPERTIES_TYPE = "TRAFO.Axis_Properties"
+FRAME_TYPE, MATRIX_TYPE, VECTOR_TYPE = "SM3M.SMC_Frame", "SM3M.SMC_Matrix3", "SM3M.SMC_Vector3D"
+
+Numbers = Sequence[float]
+Path = tuple[str | int, ...]
+"""Where a scalar lies inside a value: fields and indices."""
+
+
+@cache
+def _first(library: Library, type_name: str) -> Any:
+    return library.new(type_name)
+
+
+def new(library: Library, type_name: str) -> Any:
+    """A fresh value of a type."""
+    return _first(library, type_name)._copy()
+
+
+@cache
+def _meaningless(library: Library, type_name: str) -> Any:
+    return filled(new(library, type_name))
+
+
+def meaningless(library: Library, type_name: str) -> Any:
+    """A fresh value of a type, filled with what means nothing."""
+    return _meaningless(library, type_name)._copy()
+
+
+def axes(library: Library, values: Numbers) -> Any:
+    """Axis values. The entries beyond them are no numbers: nobody may read them."""
+    made = new(library, AXES_TYPE)
+    for i in range(AXES):
+        setattr(made, f"a{i}", values[i] if i < len(values) else nan)
+    return made
+
+
+def vector(library: Library, values: Numbers) -> Any:
+    """A vector."""
+    made = new(library, VECTOR_TYPE)
+    made.dX, made.dY, made.dZ = values
+    return made
+
+
+def matrix(library: Library, rows: Iterable[Numbers]) -> Any:
+    """A rotation."""
+    made = new(library, MATRIX_TYPE)
+    library.set_rotation(made, tuple(tuple(row) for row in rows))
+    return made
+
+
+def frame(library: Library, position: Numbers, rows: Iterable[Numbers]) -> Any:
+    """A frame."""
+    made = new(library, FRAME_TYPE)
+    made.vT.dX, made.vT.dY, made.vT.dZ = position
+    library.set_rotation(made.mR, tuple(tuple(row) for row in rows))
+    return made
+
+
+def configuration(library: Library, values: Iterable[int]) -> Any:
+    """Configuration bytes, signed or not. The bytes beyond them are not zero: nobody may read them."""
+    made = new(library, BYTES_TYPE)
+    given = [value % 256 for value in values]
+    made.abyData[:] = given + [MEANINGLESS_BYTE] * (len(made.abyData) - len(given))
+    return made
+
+
+def axes_of(value: Any) -> tuple[float, ...]:
+    """All entries of axis values."""
+    return tuple(getattr(value, f"a{i}") for i in range(AXES))
+
+
+def vector_of(value: Any) -> tuple[float, ...]:
+    """The coordinates of a vector."""
+    return value.dX, value.dY, value.dZ
+
+
+def filled(value: Any) -> Any:
+    """The same value with nothing but what means nothing in it."""
+    for path in scalars(value):
+        found = element(value, path)
+        if isinstance(found, float):
+            put(value, path, MEANINGLESS)
+        elif isinstance(found, int) and not isinstance(found, bool):
+            put(value, path, MEANINGLESS_BYTE)
+        elif path[-1:] == ("dof",):
+            put(value, path, "three")
+    return value
+
+
+def plain(value: Any) -> Any:
+    """What a value holds, to be compared later."""
+    return {path: element(value, path) for path in scalars(value)}
+
+
+def scalars(value: Any) -> Iterator[Path]:
+    """Where every scalar of a value lies."""
+    if isinstance(value, StructValue):
+        for name in value._fields:
+            yield from ((name, *rest) for rest in scalars(getattr(value, name)))
+    elif isinstance(value, list):
+        for index, part in enumerate(value):
+            yield from ((index, *rest) for rest in scalars(part))
+    else:
+        yield ()
+
+
+def element(value: Any, path: Path) -> Any:
+    """The scalar at a path."""
+    for step in path:
+        value = getattr(value, step) if isinstance(step, str) else value[step]
+    return value
+
+
+def put(value: Any, path: Path, scalar: Any) -> None:
+    """Write the scalar at a path."""
+    *outer, last = path
+    owner = element(value, tuple(outer))
+    if isinstance(last, str):
+        setattr(owner, last, scalar)
+    else:
+        owner[last] = scalar

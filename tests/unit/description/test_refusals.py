@@ -1,0 +1,155 @@
+"""Descriptions that cannot be right, or not yet: refused with a sentence that names the thing."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import pytest
+from sympy import cos, sin
+
+from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning, X, Y, branch, length, rotary
+from derive.description.validate import validate
+from derive.geometry.frames import Rx, Rz, Tx, Ty, Tz, flip_x
+from derive.kinematics.build import build
+from derive.solver.solve import Unsolved
+from tests.unit.kinematics.inventions import A1, A2, A3, A4, ELBOW, L1, L2, L3, P1, P2, P3, invention, links
+
+FOLLOWED = Turning.ABOUT_Z
+ARM = Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2)
+
+
+def described(**description: object) -> Mechanism:
+    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **description).mechanism
+
+
+def arm(**changes: object) -> Mechanism:
+    """The arm with two links in a plane, changed."""
+    sound = {"parameters": (L1, L2), "joints": (A1, A2), "chain": ARM, "task": Task("xy"), "branches": (ELBOW,)}
+    return described(**{**sound, **changes})
+
+
+def with_parameter(name: str) -> Mechanism:
+    odd = length(name, "second link", nominal=200.0)
+    return arm(parameters=(L1, odd), chain=Rz(A1) * Tx(L1) * Rz(A2) * Tx(odd))
+
+
+def test_the_arm_itself_is_sound() -> None:
+    assert build(validate(arm())).margins[0].name == "elbow"
+
+
+SAME = (ELBOW, branch("arm", -sin(A2), left=+1, right=-1))
+LOOP = (X - P1, Y - P2, P1 - P2)
+AGREES = "branch 'elbow': its indicator agrees with 0 steps, not one"
+TAKEN = "has a name that the derivation itself uses"
+TWELVE = rotary("A12", "a name too many")
+
+REFUSED = {
+    "an indicator of nothing": (arm(branches=(branch("elbow", cos(A2), a=+1, b=-1),)), AGREES),
+    "an indicator that is always positive": (arm(branches=(branch("elbow", 2 + sin(A2), a=+1, b=-1),)), AGREES),
+    "a branch without a name": (arm(branches=()), "no branch names the two solutions for a2"),
+    "two names for one branch": (arm(branches=SAME), "branches 'elbow' and 'arm' name the same two solutions"),
+    "a flip in the middle": (arm(chain=Rz(A1) * Tx(L1) * flip_x(1) * Rz(A2) * Tx(L2)), "a flip must stand at the end"),
+    "a commanded turn of a chain that turns about x": (
+        arm(joints=(A1, A2, A3), chain=ARM * Rx(A3), task=Task("xy", FOLLOWED)),
+        "not one turn about z",
+    ),
+    "a flange that turns about x": (
+        described(parameters=(L1,), joints=(P1, A1), chain=Tx(P1) * Rx(A1) * Tx(L1), task=Task("xy")),
+        "the closure does not determine a1",
+    ),
+    "fewer joints than commands": (
+        arm(joints=(A1,), chain=Rz(A1) * Tx(L1), branches=()),
+        "2 quantities (x, y), and there are only 1 joints",
+    ),
+    "one slide for two coordinates": (
+        arm(joints=(P1,), chain=Tx(P1) * Ty(2 * P1), branches=()),
+        "2 quantities (x, y), and there are only 1",
+    ),
+    "a closure of too many equations": (
+        arm(joints=(P1, P2), chain=None, closure=LOOP, branches=()),
+        "the closure has 3 equations, and the task commands only 2 quantities (x, y)",
+    ),
+    "z moved and not commanded": (arm(chain=ARM * Tz(L1 * sin(A2))), "z is not commanded but the joints move it"),
+    "a radius that is never positive": (arm(positive=(-1 - cos(A2) ** 2,)), "no sampled pose is possible"),
+    "a parameter with the name of a value": (with_parameter("reach"), f"parameter 'reach' {TAKEN}"),
+    "a parameter with the name of a joint": (with_parameter("a1"), f"parameter 'a1' {TAKEN}"),
+    "a joint with the name of a sum": (
+        arm(joints=(A1, A2, TWELVE), chain=links(A1, A2, TWELVE), task=Task("xy", FOLLOWED), parameters=(L1, L2, L3)),
+        "joint 'A12' has the name of a sum of other joints",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+def test_refused(kind: str) -> None:
+    mechanism, message = REFUSED[kind]
+    with pytest.raises((DescriptionError, Unsolved), match=re.escape(message)):
+        build(validate(mechanism))
+
+
+UNSOLVED = {
+    "one link too many": (
+        described(parameters=(L1, L2, L3), joints=(A1, A2, A3, A4), chain=links(A1, A2, A3) * Rz(A4), task=Task("xy", FOLLOWED)),
+        "no subproblem determines a1, a2, a3, a4; equations left:\n    x: ",
+    ),
+    "two slides along one line": (
+        described(joints=(P1, P2, P3), chain=Tx(P1 + P2) * Ty(P3), task=Task("xy")),
+        "no subproblem determines p1, p2; equations left:\n    x: p1 + p2 - x = 0",
+    ),
+    "a turn that moves nothing": (
+        described(joints=(P1, P2, A1), chain=Tx(P1) * Ty(P2) * Rz(A1), task=Task("xy")),
+        "the closure does not determine a1",
+    ),
+    "a coordinate that nothing moves": (
+        described(joints=(P1, P2), closure=(X - P1 - P2, Y - P1 - P2), task=Task("xy")),
+        "no subproblem determines p1, p2",
+    ),
+    "a closure without one coordinate": (
+        described(joints=(P1, P2, P3), closure=(X - P1, Y - P2), task=Task("xyz")),
+        "the closure does not determine z",
+    ),
+    "a telescope beside its column": (
+        described(parameters=(L1,), joints=(A1, P1), chain=Rz(A1) * Tx(P1) * Ty(L1), task=Task("xy")),
+        "no subproblem determines p1, a1; equations left:",
+    ),
+    "a telescope with a point beside it": (
+        described(parameters=(L1,), joints=(A1, P1), chain=Rz(A1) * Tx(P1), task=Task("xy"), positive=(P1,)),
+        "with offset_interface=False it could be built, but for a point off the flange no subproblem determines p1, a1",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", UNSOLVED)
+def test_unsolved(kind: str) -> None:
+    mechanism, message = UNSOLVED[kind]
+    with pytest.raises(Unsolved, match=re.escape(message)):
+        build(mechanism)
+
+
+def test_what_the_offset_interface_spoils_can_be_built_without() -> None:
+    telescope = UNSOLVED["a telescope with a point beside it"][0]
+    assert build(replace(telescope, offset_interface=False)).offset_branch is None
+
+
+def test_an_unknown_joint_is_named() -> None:
+    with pytest.raises(DescriptionError, match="chain reads 'a3', which is not a joint or a parameter of this mechanism"):
+        validate(arm(chain=ARM * Rz(A3)))
+
+
+def test_a_joint_that_moves_nothing_is_named() -> None:
+    with pytest.raises(DescriptionError, match="joint 'A3' occurs nowhere in the closure"):
+        validate(arm(joints=(A1, A2, A3)))
+
+
+def test_an_unknown_joint_in_an_indicator_is_named() -> None:
+    with pytest.raises(DescriptionError, match="branch 'elbow' reads 'a3', which is not a joint or a parameter"):
+        validate(arm(branches=(branch("elbow", sin(A3), right=+1, left=-1),)))
+
+
+def test_a_branch_has_two_names_and_both_signs() -> None:
+    for names in ({"right": 1}, {"right": 1, "left": 1}, {"right": 1, "left": -1, "up": 1}, {"right": 2, "left": -2}):
+        with pytest.raises(DescriptionError, match="branch 'elbow' needs two names with the signs \\+1 and -1"):
+            branch("elbow", sin(A2), **names)
+
+

@@ -1,0 +1,57 @@
+"""A description whose drawing would lie is refused, with a sentence that says what is wrong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from derive.description.mechanism import DescriptionError, Mechanism, X, Y, rod
+from derive.description.validate import validate
+from derive.drawing.drawing import drawing_of
+from derive.kinematics.build import build
+from tests.unit.drawing.machines import CATALOGUE
+
+SCISSOR = CATALOGUE["Kin_P2X_Type2"]
+CRANE = CATALOGUE["Kin_Crane"]
+LENGTH, _ = SCISSOR.parameters
+A1, A2 = SCISSOR.joints
+R, THETA, _ = CRANE.joints
+
+
+def _scissor(*bars: object) -> Mechanism:
+    return replace(SCISSOR, bars=tuple(bars))
+
+
+WRONG = {
+    "a bar that is not as long as stated": (
+        _scissor(rod("1", (A1, 0), (X, Y), LENGTH), rod("2", (A2, 0), (X, Y), LENGTH)),
+        r"bar '1' is 400 long, but its ends are \d+(\.\d+)? apart in the drawn pose",
+    ),
+    "a joint that moves nothing": (
+        _scissor(rod("1", *(SCISSOR.bars[0].base, SCISSOR.bars[0].plate), LENGTH)),
+        "nothing that is drawn moves with joint 'A2': name its bars",
+    ),
+    "no pose to draw": (
+        replace(SCISSOR, joints=tuple(replace(j, nominal=2.0 * j.nominal) for j in SCISSOR.joints)),
+        "no pose can be drawn: the nominal values of its joints fit no pose",
+    ),
+    "an end that goes on no circle": (
+        replace(CRANE, bars=(rod("reach", (0, 0, 0), (0, 0, R), R), rod("boom", (0, 0, THETA), (X, Y, THETA + 100), 200))),
+        "joint 'Theta' does not move the end of its bar on a circle",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_refused(case: str) -> None:
+    mechanism, message = WRONG[case]
+    kinematics = build(validate(mechanism))
+    with pytest.raises(DescriptionError, match=message):
+        drawing_of(kinematics)
+
+
+def test_a_bar_of_something_unknown_is_refused_before() -> None:
+    strange = CATALOGUE["Kin_PCC"].parameters[0]
+    with pytest.raises(DescriptionError, match="bar '1' reads 'link_length_1', which is not a joint or a parameter"):
+        validate(_scissor(rod("1", (A1, 0), (X, Y), strange)))

@@ -1,0 +1,140 @@
+"""What branches share, and what they need not both hold: common parts, names used again, and the order of branches."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Statement,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.optimize.coalesce import reused_names
+from derive.optimize.common_parts import common_parts
+from derive.optimize.control_flow import Arms, in_arms, spared
+from derive.optimize.unroll import Sign, unroll, without_words
+from tests.unit.optimize.test_twins import same, values
+
+ARM, ELBOW = Sign(real("sigma_arm"), ("front", "back")), Sign(real("sigma_elbow"), ("down", "up"))
+SIGNS = (ARM, ELBOW)
+A, B, C, P, Q, R, X, Y = (real(n) for n in "abcpqrxy")
+
+
+def unrolled(*body: Statement, outputs: dict[str, sp.Expr]) -> Program:
+    return unroll(assemble("p", body, [Output(name, value) for name, value in outputs.items()]), SIGNS)
+
+
+def shared(program: Program, constants: str = "") -> Program:
+    return common_parts(program, SIGNS, frozenset(constants))
+
+
+def test_products_of_both_branches_are_computed_once() -> None:
+    swing = Let(R, ELBOW.symbol * Root(X))
+    turned = (Let(real("c"), P * Y - Q * R), Let(real("s"), Q * Y + P * R))
+    program = unrolled(swing, *turned, outputs={"c": C, "s": real("s")})
+    found = values(shared(program))
+    assert found["p_times_y"] == P * Y and found["q_times_r_down"] == Q * real("r_down")
+    assert {found["c_down"], found["c_up"]} == {
+        real("p_times_y") - real("q_times_r_down"),
+        real("p_times_y") + real("q_times_r_down"),
+    }
+    same(program, shared(program))
+
+
+def test_a_sum_within_sums_is_computed_once() -> None:
+    first = Let(A, X * P + Y * Q - R * ELBOW.symbol)
+    program = unrolled(first, Let(B, X * P + Y * Q + C), outputs={"a": A, "b": B})
+    found = shared(program)
+    assert sum(let.value.has(P) for let in found.lets()) == 1
+    same(program, found)
+
+
+def test_a_part_that_has_a_name_keeps_it() -> None:
+    lets = (Let(A, X - Y), Let(B, X - Y + P), Let(C, Y - X + Q))
+    program = assemble("p", lets, [Output("o", A * B * C)])
+    assert values(shared(program)) == {"a": X - Y, "b": A + P, "c": Q - A}
+
+
+def test_parts_are_found_on_sides_of_choices_and_in_quotients() -> None:
+    regular = sp.Gt(R, 1)
+    lets = (Let(A, Select(regular, (X * P + Y * Q) / R, C)), Let(B, Select(regular, (X * P - Y * Q) / R, C)))
+    program = assemble("p", lets, [Output("a", A), Output("b", B)])
+    assert values(shared(program))["p_times_x"] == P * X
+    same(program, shared(program))
+
+
+def test_parts_of_constants_alone_are_not_touched() -> None:
+    program = assemble("p", [Let(A, X + P * Q), Let(B, Y + P * Q)], [Output("o", A * B)])
+    assert shared(program, "pq") == program
+    assert "p_times_q" in values(shared(program))
+
+
+def test_what_is_too_long_to_say_is_a_part_of_its_first_reader() -> None:
+    product = real("a_name_that_is_itself_already_quite_long") * real("another_name_that_is_not_short_either")
+    program = assemble("p", [Let(A, X + product), Let(B, Y + product)], [Output("o", A * B)])
+    assert values(shared(program))["part_of_a"] == product
+
+
+def test_squares_that_differ_with_equal_sums_have_one_name() -> None:
+    swing = Let(R, ELBOW.symbol * Root(X))
+    vector = (Let(P, A * Y + R * B), Let(Q, A * B - R * Y))
+    program = unrolled(swing, *vector, Let(C, P**2 + Q**2), outputs={"o": C + P})
+    assert [name for name in values(program) if name.startswith("c_")] == ["c_down"]
+
+
+def test_branches_come_one_after_the_other_and_the_opposite_takes_no_minus() -> None:
+    body = (Let(P, -Root(X) * ELBOW.symbol), Let(Q, Y * ARM.symbol + P), Let(R, Root(Q) + P))
+    program = unrolled(*body, outputs={"o": R})
+    outputs = [o.name for o in program.outputs if o.name.startswith("o_")]
+    assert outputs == ["o_front_down", "o_front_up", "o_back_down", "o_back_up"]
+    assert values(program)["p_up"] == Root(X)
+
+
+def test_a_branch_uses_the_names_of_the_one_before() -> None:
+    body = (Let(P, Y * ARM.symbol + Root(X)), Let(Q, Root(P) + ELBOW.symbol), Let(R, Root(Q) + P))
+    program = unrolled(*body, outputs={"o": R})
+    wanted = [o.value for o in program.outputs]
+    items, names = reused_names(in_arms(program.body, wanted), wanted, SIGNS)
+    bound = [item.name.name for item in items if isinstance(item, Let)]
+    assert bound == ["p", "q", "r_front_down", "q", "r_front_up", "p", "q", "r_back_down", "q", "r_back_up"]
+    assert [names[v].name for v in sorted(names, key=str) if v.name.startswith("r_")] == [
+        "r_back_down", "r_back_up", "r_front_down", "r_front_up",
+    ]  # fmt: skip
+
+
+def test_what_is_needed_at_the_same_time_keeps_its_words() -> None:
+    body = (Let(P, Root(X) + ELBOW.symbol), Let(Q, P * ARM.symbol))
+    program = unrolled(*body, outputs={"o": Q + P})
+    wanted = [o.value for o in program.outputs]
+    _, names = reused_names(in_arms(program.body, wanted), wanted, SIGNS)
+    assert {names[n].name for n in names if n.name.startswith("p_")} == {"p_down", "p_up"}
+
+
+def test_words_behind_a_name() -> None:
+    assert without_words("axis_a1_front_up", SIGNS) == ("axis_a1", ("front", "up"))
+    assert without_words("cos_q1_back", SIGNS) == ("cos_q1", ("back",))
+    assert without_words("up", SIGNS) == ("up", ())
+
+
+def test_what_only_later_second_sides_read_is_not_bound_on_the_first() -> None:
+    regular = sp.Gt(R, 1)
+    body = [
+        Let(P, Select(regular, X, sp.sin(Y))),
+        Let(Q, Select(regular, -X, sp.cos(Y))),
+        Let(A, Root(P)),
+        Let(B, Select(regular, A + 1, Root(Q))),
+        Let(C, Select(regular, A + 2, Root(Q) + Q)),
+    ]
+    first, _, second = spared(in_arms(body, [A, B, C]), [A, B, C])
+    assert isinstance(first, Arms) and isinstance(second, Arms)
+    assert [let.name for let in first.holds if isinstance(let, Let)] == [P]
+    assert {let.name for let in first.fails if isinstance(let, Let)} == {P, Q}

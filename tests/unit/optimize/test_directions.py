@@ -1,0 +1,266 @@
+"""Shorter inverses: the program before and after, and the same answers."""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Atan2,
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.optimize.angle_addition import angles_first
+from derive.optimize.directions import plain_directions
+from derive.optimize.negation import without_minus
+from derive.optimize.simplify import shorter
+from derive.optimize.without_periods import turnless
+from tests.unit.optimize.test_twins import same, values
+
+C1, S1, C2, S2, C3, S3, C12, S12, C123, S123 = (
+    real(f"{f}_{q}") for q in ("q1", "q2", "q3", "q12", "q123") for f in ("cos", "sin")
+)
+A, B, E, L, N, R, T, U, V, X, Y = (real(n) for n in "abelnrtuvxy")
+AXIS1, AXIS2, AXIS3 = (real(f"axis_a{i}") for i in (1, 2, 3))
+REGULAR = sp.Gt(R, 1)
+
+
+def axis(name: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Let:
+    return Let(name, NearestPeriod(Atan2(sine, cosine) / DEGREE + A, N), "its turn")
+
+
+def of(*lets: Let, outputs: tuple[sp.Symbol, ...]) -> Program:
+    return assemble("p", lets, [Output(o.name, o) for o in outputs])
+
+
+def length(value: sp.Expr) -> Let:
+    return Let(L, Select(REGULAR, Root(value), sp.Integer(1)))
+
+
+DIRECTION = (
+    length(U**2 + V**2),
+    Let(C1, Select(REGULAR, U / L, sp.cos(T)), "q1"),
+    Let(S1, Select(REGULAR, V / L, sp.sin(T))),
+)
+"""The direction (u, v), and that of an angle where it is none."""
+SUM = (Let(C12, C1 * C2 - S1 * S2, "by the sum"), Let(S12, S1 * C2 + C1 * S2))
+
+
+def test_nothing_is_divided_for_a_direction() -> None:
+    program = of(*DIRECTION, axis(AXIS1, S1, C1), outputs=(AXIS1,))
+    found = values(plain_directions(program))
+    assert found["direction_x_q1"] == Select(REGULAR, U, sp.cos(T)) and found["direction_y_q1"] == Select(REGULAR, V, sp.sin(T))
+    assert "l" not in found and "cos_q1" not in found
+    same(program, plain_directions(program))
+
+
+def test_nor_for_what_is_made_of_it_in_proportion() -> None:
+    made = (Let(real("made_y"), X * C1 - Y * S1), Let(real("made_x"), X * S1 + B * C1))
+    program = of(*DIRECTION, *made, axis(AXIS1, made[0].name, made[1].name), outputs=(AXIS1,))
+    assert "l" not in values(plain_directions(program))
+    same(program, plain_directions(program))
+
+
+@pytest.mark.parametrize(
+    "read",
+    [X + C1, C1**2, C1 * S1, Root(C1), Atan2(S1, X), Select(sp.Gt(C1, X), X, Y), Select(REGULAR, C1, X)],
+    ids=str,
+)
+def test_what_else_is_made_of_it_keeps_the_division(read: sp.Expr) -> None:
+    program = of(*DIRECTION, axis(AXIS1, S1, C1), Let(E, read), outputs=(AXIS1, E))
+    assert "l" in values(plain_directions(program))
+
+
+def test_a_condition_on_it_keeps_the_division() -> None:
+    body = (*DIRECTION, axis(AXIS1, S1, C1), Require(sp.Ge(C1, 0), Status.UNREACHABLE))
+    program = assemble("p", body, [Output("o", AXIS1)])
+    assert plain_directions(program) == program
+
+
+def test_a_divisor_that_is_no_length_is_kept() -> None:
+    """It could be negative, and would turn the direction round."""
+    program = of(Let(L, X - Y), Let(C1, U / L), Let(S1, V / L), axis(AXIS1, S1, C1), outputs=(AXIS1,))
+    assert plain_directions(program) == program
+
+
+@pytest.mark.parametrize("senses", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_angle_of_a_rotated_direction_is_a_sum(senses: tuple[int, int], sign: int) -> None:
+    first, second = senses
+    lets = (
+        Let(C1, X / 2), Let(S1, Y / 2), Let(C2, U / 2), Let(S2, V / 2),
+        Let(C12, sign * (C1 * C2 - first * second * S1 * S2), "by the sum"),
+        Let(S12, sign * (first * S1 * C2 + second * C1 * S2)),
+    )  # fmt: skip
+    program = of(*lets, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), axis(AXIS3, S12, C12), outputs=(AXIS1, AXIS2, AXIS3))
+    found = plain_directions(program)
+    half = 180 * DEGREE if sign < 0 else 0
+    wanted = A + (first * real("angle_q1") + second * real("angle_q2") + half) / DEGREE
+    assert sp.expand(values(found)["axis_a3"].args[0] - wanted) == 0
+    assert "cos_q12" not in values(found)
+    assert [let.note for let in found.lets() if let.name == AXIS3] == ["by the sum; its turn"]
+    same(program, found)
+
+
+def test_a_sum_of_three_takes_one_new_angle() -> None:
+    lets = (
+        Let(C1, X / 2), Let(S1, Y / 2), Let(C2, U / 2), Let(S2, V / 2), Let(C12, C1 * C2 - S1 * S2), Let(S12, S1 * C2 + C1 * S2),
+        Let(C3, B * C12 + E * S12), Let(S3, E * C12 - B * S12),
+    )  # fmt: skip
+    program = of(*lets, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), axis(AXIS3, S3, C3), outputs=(AXIS1, AXIS2, AXIS3))
+    found = values(plain_directions(program))
+    assert found["angle_with_q3"] == Atan2(E, B) and "cos_q12" not in found
+    same(program, plain_directions(program))
+
+
+def test_two_new_angles_for_one_are_no_gain() -> None:
+    program = of(*SUM, axis(AXIS3, S12, C12), outputs=(AXIS3,))
+    assert plain_directions(program) == program
+
+
+def test_a_rotated_direction_that_something_else_reads_is_left_alone() -> None:
+    program = of(*SUM, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), axis(AXIS3, S12, C12), outputs=(AXIS1, AXIS2, AXIS3, C12))
+    assert plain_directions(program) == program
+
+
+def test_what_a_constant_angle_turned_is_turned_back() -> None:
+    lets = (
+        Let(E, Root(A**2 + B**2)),
+        Let(C1, A / E * X - B / E * Y),
+        Let(S1, B / E * X + A / E * Y),
+        Let(U, B * C1 - A * S1),
+        Let(V, R + A * C1 + B * S1),
+        Let(T, A * C1 - B * S1),
+    )
+    program = of(*lets, outputs=(C1, S1, U, V, T))
+    found = values(shorter(program))
+    assert found["u"] == -E * Y and found["v"] == R + E * X
+    assert found["t"] == A * C1 - B * S1  # turned once more it gets no shorter
+    same(program, shorter(program))
+
+
+def test_a_name_that_is_read_as_its_negative_is_bound_as_that() -> None:
+    program = of(Let(U, -X - Y, "the sum"), Let(V, -U), Let(R, V * V + X), outputs=(R,))
+    found = shorter(program)
+    assert values(found)["v"] == X + Y and "u" not in values(found)
+    assert found.lets()[0].note == "the sum"
+    same(program, found)
+    twice = of(Let(U, -X - Y), Let(V, -U), Let(R, V * U), outputs=(R,))
+    assert shorter(twice) == twice
+
+
+def test_angles_first_where_nothing_reads_sines_but_the_sum() -> None:
+    lets = (
+        Let(real("along"), X * U + Y * V), Let(real("across"), Y * U - X * V),
+        length(real("along") ** 2 + real("across") ** 2),
+        Let(C1, Select(REGULAR, real("along") / L, sp.cos(T))), Let(S1, Select(REGULAR, real("across") / L, sp.sin(T))),
+        Let(C3, sp.cos(X)), Let(S3, sp.sin(X)), Let(C2, A * C3 - B * S3), Let(S2, A * S3 + B * C3), *SUM,
+    )  # fmt: skip
+    program = of(*lets, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), outputs=(AXIS1, AXIS2, C12, S12))
+    found = values(angles_first(program, frozenset("ab")))
+    assert found["cos_q12"] == sp.cos(real("angle_q12")) and found["angle_q12"] == real("angle_q1") + real("angle_q2")
+    assert isinstance(found["angle_q1"], Select) and found["angle_q1"].args[2] == T
+    assert found["angle_q2"] == real("angle_of_a") + real("angle_of_q3") and found["angle_of_a"] == Atan2(B, A)
+    assert not {"along", "across", "l", "cos_q1", "sin_q2"} & set(found)
+    turn = (Let(A, sp.cos(E)), Let(B, sp.sin(E)))  # of length one
+    same(*(assemble("p", (*turn, *p.body), p.outputs) for p in (program, angles_first(program, frozenset("ab")))))
+    other = of(*lets, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), outputs=(AXIS1, AXIS2, C12, S12, C2))
+    assert "cos_q2" in values(angles_first(other, frozenset("ab")))
+
+
+def test_a_sum_of_mere_directions_is_no_cosine() -> None:
+    """They need not be of length one."""
+    first, second = (real("direction_y_q1"), real("direction_x_q1")), (real("direction_y_q2"), real("direction_x_q2"))
+    turned = [Let(n, v) for (s, c), w in ((first, U), (second, V)) for n, v in ((c, A * X - B * w), (s, B * X + A * w))]
+    (s1, c1), (s2, c2) = first, second
+    total = (Let(C12, c1 * c2 - s1 * s2), Let(S12, s1 * c2 + c1 * s2))
+    program = of(*turned, *total, axis(AXIS1, *first), axis(AXIS2, *second), outputs=(AXIS1, AXIS2, C12, S12))
+    assert values(angles_first(program, frozenset("ab")))["cos_q12"] == c1 * c2 - s1 * s2
+
+
+def test_an_angle_whose_turns_count_is_no_sum() -> None:
+    lets = (Let(C1, X * U + Y * V), Let(S1, Y * U - X * V))
+    counted = of(*lets, Let(AXIS1, Atan2(S1, C1) / DEGREE), outputs=(AXIS1,))
+    assert angles_first(counted, frozenset()) == counted
+    nearest = of(*lets, axis(AXIS1, S1, C1), outputs=(AXIS1,))
+    assert len(values(angles_first(nearest, frozenset()))["angle_q1"].free_symbols) == 2
+    same(nearest, angles_first(nearest, frozenset()))
+
+
+def test_turns_count_wherever_more_than_a_sine_or_the_nearest_turn_is_taken() -> None:
+    angle, other = real("angle"), real("other")
+    bound = (Let(angle, Atan2(X, Y)), Let(other, angle - T))
+    assert turnless(of(*bound, Let(R, sp.sin(other + X)), outputs=(R,))) == {angle, other}
+    assert turnless(of(*bound, Let(R, NearestPeriod(A - other / DEGREE, N)), outputs=(R,))) == {angle, other}
+    assert turnless(of(*bound, Let(R, sp.sin(other / 2)), outputs=(R,))) == set()
+    assert turnless(of(*bound, Let(R, NearestPeriod(other * X, N)), outputs=(R,))) == set()
+    assert turnless(of(*bound, Let(R, NearestPeriod(X, other)), outputs=(R,))) == set()
+    assert turnless(of(*bound, Let(R, Select(sp.Gt(other, 0), X, Y)), outputs=(R,))) == set()
+    assert turnless(of(*bound, outputs=(other,))) == set()
+
+
+def test_the_opposite_direction_is_half_a_turn_away() -> None:
+    lets = (Let(C1, -X * U - Y * V), Let(S1, -X * V - Y))
+    program = of(*lets, axis(AXIS1, S1, C1), outputs=(AXIS1,))
+    found = values(without_minus(program))
+    assert found["minus_cos_q1"] == X * U + Y * V and found["minus_sin_q1"] == X * V + Y
+    assert found["axis_a1"] == NearestPeriod(A + 180 + Atan2(real("minus_sin_q1"), real("minus_cos_q1")) / DEGREE, N)
+    same(program, without_minus(program))
+    read = of(*lets, axis(AXIS1, S1, C1), outputs=(AXIS1, S1))
+    assert without_minus(read) == read
+
+
+def test_a_chain_of_negatives_is_bound_throughout() -> None:
+    program = of(Let(U, -X - Y), Let(V, -U), Let(T, -V), Let(R, T * T + X), outputs=(R,))
+    assert shorter(program).inputs == (X, Y)
+    same(program, shorter(program))
+
+
+def test_a_divisor_that_can_be_negative_turns_the_angle() -> None:
+    """It is no length: divided by a negative number a direction is the opposite one."""
+    lets = (
+        Let(C1, Select(sp.Gt(R**2, 1), (U * X - V * Y) / R, sp.cos(T))),
+        Let(S1, Select(sp.Gt(R**2, 1), (U * Y + V * X) / R, sp.sin(T))),
+    )
+    program = of(*lets, axis(AXIS1, S1, C1), outputs=(AXIS1,))
+    assert angles_first(program, frozenset()) == program
+
+
+def test_a_quotient_that_reads_another_keeps_its_division() -> None:
+    """It would grow with the square of the length, and the other with the length."""
+    made = Let(real("made"), C1 * X / L)
+    program = of(*DIRECTION[:1], Let(C1, U / L), Let(S1, V / L), made, axis(AXIS1, S1, made.name), outputs=(AXIS1,))
+    assert "l" in values(plain_directions(program))
+    same(program, plain_directions(program))
+
+
+def test_an_angle_times_a_coordinate_of_its_direction_keeps_the_division() -> None:
+    program = of(*DIRECTION, axis(AXIS1, S1, C1), Let(E, C1 * Atan2(S1, C1)), outputs=(AXIS1, E))
+    assert "l" in values(plain_directions(program))
+
+
+def test_half_an_angle_counts_turns_though_its_sines_cancel() -> None:
+    angle = real("angle")
+    program = of(Let(angle, Atan2(X, Y)), Let(R, sp.cos(angle / 2) - sp.sin(angle / 2)), outputs=(R,))
+    assert turnless(program) == set()
+
+
+def test_an_axis_without_a_turn_of_its_own_is_not_turned_round() -> None:
+    lets = (Let(C1, -X * U - Y * V), Let(S1, -X * V - Y))
+    program = of(*lets, Let(AXIS1, Atan2(S1, C1) / DEGREE), outputs=(AXIS1,))
+    assert without_minus(program) == program

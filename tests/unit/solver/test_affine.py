@@ -1,0 +1,77 @@
+"""Affine: k v + c = 0 has one root; where k can vanish the rule keeps away."""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from derive.ir.program import (
+    Let,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.subproblems.affine import affine
+from tests.unit.solver.execution import ANYTHING, LENGTHS, NUMBERS, all_finite, answer, answers, at, execute, problem
+
+V, W, U = (real(n) for n in "vwu")
+B, C = real("b"), real("c")
+K = sp.Symbol("k", positive=True)
+S = sp.Symbol("s", real=True, nonzero=True)
+
+MANY_TERMS = problem(K * V - B * C + C**2, lengths=(V,))
+DIRECTED = problem(S * V + B, lengths=(V,), signs=(S,))
+
+
+@given(k=LENGTHS, b=NUMBERS, c=NUMBERS)
+def test_the_root(k: float, b: float, c: float) -> None:
+    values, status = execute(answer(affine, MANY_TERMS).statements, {K: k, B: b, C: c})
+    assert status is Status.OK
+    residual = at(MANY_TERMS.equations[0].expression, values)
+    assert abs(residual) <= 1e-14 * (abs(b * c) + c * c)
+    assert abs(values["v"] - (b * c - c * c) / k) <= 1e-14 * (abs(b * c) + c * c) / k
+
+
+@given(s=st.sampled_from([1.0, -1.0]), b=NUMBERS)
+def test_a_direction_never_vanishes(s: float, b: float) -> None:
+    values, _ = execute(answer(affine, DIRECTED).statements, {S: s, B: b})
+    assert values["v"] == -b * s
+
+
+def test_one_root_without_conditions() -> None:
+    binding = answer(affine, MANY_TERMS)
+    assert binding.unknowns == (V,)
+    assert binding.slope is binding.measure is None
+    assert all(isinstance(s, Let) for s in binding.statements)
+
+
+def test_every_equation_is_a_candidate() -> None:
+    found = answers(affine, problem(2 * V - B, V * K - C, 3 * W + C, lengths=(V, W)))
+    assert [b.unknowns for b in found] == [(V,), (V,), (W,)]
+
+
+def test_a_name_stands_for_its_definition() -> None:
+    name, long, short = real("name"), sp.Symbol("long", positive=True), sp.Symbol("short", positive=True)
+    given_problem = problem(name * V - B, lengths=(V,))
+    cannot = type(given_problem)(**{**vars(given_problem), "definitions": {name: long + short}})
+    can = type(given_problem)(**{**vars(given_problem), "definitions": {name: long - short}})
+    assert len(answers(affine, cannot)) == 1
+    assert answers(affine, can) == []
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [B * V + C, (K - 1) * V + C, K * V + W, K * V**2 + C, K * V * W, V * sp.cos(U) + C, B + C, U - B, sp.cos(U) - C],
+    ids=str,
+)
+def test_not_taken(expression: sp.Expr) -> None:
+    assert answers(affine, problem(expression, angles=(U,), lengths=(V, W))) == []
+
+
+@given(k=st.floats(1e-9, 1e9), b=ANYTHING, c=ANYTHING)
+def test_total(k: float, b: float, c: float) -> None:
+    values, _ = execute(answer(affine, MANY_TERMS).statements, {K: k, B: b, C: c})
+    assert all_finite(values)

@@ -1,0 +1,126 @@
+"""Parallel axes: a sum of angles in place of one of them, and that one found again at the end."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from derive.algebra.angle_sums import composite
+from derive.algebra.normal_form import cosine, polynomial
+from derive.equations.problem import Problem
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
+from tests.unit.solver.execution import ANGLES, angle_of, at, distance, execute, few, problem, reference, trigonometry
+
+A1, A2, A3 = ANGLE_NAMES = tuple(real(n) for n in ("a1", "a2", "a3"))
+X, Y = real("x"), real("y")
+L = sp.Symbol("link", positive=True)
+
+CLOSURE = problem(
+    L * sp.cos(A1) + sp.cos(A1 + A2) - X,
+    sp.sin(A1 + A2 + A3) - Y,
+    L * sp.sin(A3 - A1) + A2 - X,
+    angles=ANGLE_NAMES,
+)
+SUMS = {
+    "a1 + a2": (((A1, 1), (A2, 1)), A2),
+    "a1 + a2 + a3": (((A1, 1), (A2, 1), (A3, 1)), A3),
+    "a2 - a1": (((A1, -1), (A2, 1)), A2),
+    "a1 - a2 - a3": (((A1, 1), (A2, -1), (A3, -1)), A3),
+    "-a1 - a2": (((A1, -1), (A2, -1)), A1),
+}
+
+
+def the_sum(name: str) -> Sum:
+    terms, replaced = SUMS[name]
+    return Sum(real("total"), terms, replaced)
+
+
+def total_of(name: str, turns: tuple[float, ...]) -> float:
+    angles = dict(zip(ANGLE_NAMES, turns, strict=True))
+    return sum(angles[a] * sign for a, sign in SUMS[name][0])
+
+
+@few
+@pytest.mark.parametrize("name", SUMS)
+@given(turns=st.tuples(ANGLES, ANGLES, ANGLES), x=ANGLES, y=ANGLES, link=ANGLES)
+def test_the_same_equations(name: str, turns: tuple[float, ...], x: float, y: float, link: float) -> None:
+    total = the_sum(name)
+    changed = substitute(CLOSURE, total)
+    values = {"a1": turns[0], "a2": turns[1], "a3": turns[2], "x": x, "y": y, "link": link}
+    named = trigonometry(total=total_of(name, turns), a1=turns[0], a2=turns[1], a3=turns[2])
+    numbers = {k: np.asarray(v) for k, v in [*values.items(), *((s.name, v) for s, v in named.items())]}
+    for before, after in zip(CLOSURE.equations, changed.equations, strict=True):
+        assert abs(at(before.expression, numbers) - at(after.expression, numbers)) <= 1e-12
+
+
+@pytest.mark.parametrize("name", SUMS)
+def test_the_replaced_angle_leaves_all_but_plain_equations(name: str) -> None:
+    """An equation that holds the angle itself counts its turns: it waits."""
+    total = the_sum(name)
+    changed = substitute(CLOSURE, total)
+    assert total.replaced not in changed.angles
+    assert total.replaced in changed.pending
+    assert total.symbol in changed.angles
+    holding = [e for e in changed.equations if total.replaced in changed.unknowns_of(e.expression)]
+    assert holding == [e for e in CLOSURE.equations if total.replaced in e.expression.free_symbols]
+
+
+def test_what_holds_the_sum_alone_becomes_one_unknown() -> None:
+    changed = substitute(CLOSURE, the_sum("a1 + a2 + a3"))
+    assert changed.unknowns_of(changed.equations[1].expression) == (real("total"),)
+
+
+@few
+@pytest.mark.parametrize("name", SUMS)
+@given(turns=st.tuples(ANGLES, ANGLES, ANGLES))
+def test_the_replaced_angle_follows(name: str, turns: tuple[float, ...]) -> None:
+    total = the_sum(name)
+    solved = _with_unknowns(substitute(CLOSURE, total), ())
+    binding = resolve(solved, total)
+    assert binding is not None
+    assert binding.unknowns == (total.replaced,)
+    known = trigonometry(total=total_of(name, turns), a1=turns[0], a2=turns[1], a3=turns[2])
+    others = {s: v for s, v in known.items() if not s.name.endswith(total.replaced.name)}
+    values, _ = execute(binding.statements, others)
+    assert distance(angle_of(values, total.replaced), turns[ANGLE_NAMES.index(total.replaced)]) <= 1e-13
+
+
+@pytest.mark.parametrize("missing", [real("total"), A1, A2])
+def test_it_waits_for_all_others(missing: sp.Symbol) -> None:
+    total = the_sum("a1 + a2 + a3")
+    assert resolve(_with_unknowns(substitute(CLOSURE, total), (missing,)), total) is None
+
+
+def _with_unknowns(given_problem: Problem, angles: tuple[sp.Symbol, ...]) -> Problem:
+    return Problem(**{**vars(given_problem), "angles": angles})
+
+
+def test_the_reference_of_a_sum_is_the_sum_of_the_references() -> None:
+    free = substitute(CLOSURE, the_sum("a1 - a2 - a3")).free[real("total")]
+    assert sp.expand(free - (reference(A1) - reference(A2) - reference(A3))) == 0
+
+
+def test_candidates() -> None:
+    """Arguments with several unknown angles first, then differences; a fixed turn of the base does not count."""
+    arguments = [A1, A1 + A2, A1 + A2 + A3 + sp.pi / 6]
+    found = candidate_sums(CLOSURE, arguments)
+    assert [t.symbol.name for t in found] == ["a12", "a123", "a23"]
+    assert [t.replaced for t in found] == [A2, A3, A3]
+    assert found[0].symbol == composite(((A1, 1), (A2, 1)))
+
+
+def test_known_angles_make_no_sum() -> None:
+    known = _with_unknowns(CLOSURE, (A2,))
+    assert candidate_sums(known, [A1 + A2, A2, 2 * A2]) == ()
+
+
+def test_a_sum_that_is_solved_names_itself() -> None:
+    changed = substitute(CLOSURE, the_sum("a1 + a2"))
+    assert cosine(real("total")) in changed.atoms()
+    assert polynomial(sp.cos(real("total")), changed.units, ()) == cosine(real("total"))
