@@ -6,14 +6,15 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 
 import numpy as np
+import softkin
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Array
-from tests.catalogue.corners import DISTANCES, Corner, can_be_at, corners, factor_program
+from tests.catalogue.corners import DISTANCES, Corner, can_be_at, corners
 from tests.catalogue.loop_machines import loop_machines_of
 from tests.catalogue.machines import Machine, bare_machine, machine, machines_of
 from tests.catalogue.robots import KR6_R900, PUMA_560, UR5
+from tests.mechanisms import catalogue
 
 PLACES = 2
 """Places of every combination of factors."""
@@ -43,7 +44,11 @@ SPECIAL["Kin_Pos_RRR"] = {
 }
 APART = {"Kin_P2X_Type1", "MC_KIN_TYPE_12_XY"}
 """Loops whose factors vanish together only where nothing controls the plate."""
-PAIRED = tuple(m for _, m in catalogue() if not m.is_platform and not m.is_orientation and len(factor_program(m).outputs) > 1)
+CANDIDATES = tuple(m for _, m in catalogue() if not m.is_platform and not m.is_orientation)
+SINGLE = {"Kin_P2X_Type2", "Kin_Polar", "Kin_Polar_Z"}
+"""Mechanisms with one factor."""
+PAIRED = tuple(m for m in CANDIDATES if softkin.catalogue()[m.name].MARGINS and m.name not in SINGLE)
+"""Mechanisms with two factors or more."""
 
 
 def robots(mechanism: Mechanism) -> Iterator[Machine]:

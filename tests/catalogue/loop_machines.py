@@ -12,10 +12,10 @@ import sympy as sp
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism, Role, Turning
 from tests.catalogue.closure import POSITION, Array, Closure, derivative
 from tests.catalogue.machines import TURNS, Machine
+from tests.mechanisms import catalogue
 
 LOOPS = tuple(m for _, m in catalogue() if m.rods and m.task.turning is not Turning.FULL)
 """Loops whose plate keeps its orientation. One whose plate turns has tests of its own: `hexapod`."""

@@ -11,10 +11,10 @@ import softkin
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role
 from derive.geometry.frames import Motion
 from tests.catalogue.closure import Array, Closure
+from tests.mechanisms import catalogue
 
 MECHANISMS = tuple(m for _, m in catalogue() if not m.rods and not m.is_orientation and m.search is None)
 """The serial mechanisms: machines of closed loops are in `loop_machines.py`, those of a platform in `hexapod`, orientation
@@ -88,8 +88,7 @@ class Machine:
     @property
     def is_spatial(self) -> bool:
         """Whether a chain turns about more than one direction: no plane, no heading, no outer circle."""
-        chain = self.mechanism.chain
-        return chain is not None and len({f.axis for f in chain.factors if f.motion is Motion.TURN}) > 1
+        return is_spatial(self.mechanism)
 
     def answers(self, statuses: Array) -> Array:
         """Which rows a slot answers; a machine whose branches each have a reach may refuse some."""
@@ -156,6 +155,12 @@ class Machine:
             size = 180.0 if joint.is_angle else self.reach
         low, high = joint.domain or (-size, size)
         return max(low, -size), min(high, size)
+
+
+def is_spatial(mechanism: Mechanism) -> bool:
+    """Whether its chain turns about more than one direction."""
+    chain = mechanism.chain
+    return chain is not None and len({f.axis for f in chain.factors if f.motion is Motion.TURN}) > 1
 
 
 @cache

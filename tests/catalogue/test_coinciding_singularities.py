@@ -6,7 +6,6 @@ pose of a grid of right angles: with dimensions of arms that are sold, and with 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cache
 from itertools import product
 
@@ -17,7 +16,7 @@ from softkin import Status
 from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Array
 from tests.catalogue.loci import Locus, coinciding, loci
-from tests.catalogue.machines import MECHANISMS, Machine, bare_machine, machine, machines_of
+from tests.catalogue.machines import MECHANISMS, Machine, bare_machine, is_spatial, machine, machines_of
 from tests.catalogue.robots import ROBOTS
 from tests.catalogue.self_motion import is_free
 from tests.catalogue.test_boundary import alone
@@ -30,16 +29,11 @@ CORNER = 2e-3
 ENOUGH = 30
 CLOSEST = 1e-11
 """Where a margin is smaller, a byte is 3."""
-SPATIAL = tuple(m for m in MECHANISMS if machines_of(m)[0].is_spatial and m.branches)
+SPATIAL = tuple(m for m in MECHANISMS if is_spatial(m) and m.branches)
 
 
-def robots(mechanism: Mechanism) -> Mapping[str, Machine]:
-    """Robots by their published dimensions; with equal links and nothing else; random ones."""
-    found = {name: machine(mechanism, name, given) for name, given in ROBOTS.get(mechanism.name, {}).items()}
-    return {**found, "bare": bare_machine(mechanism), "random": machines_of(mechanism)[-1]}
-
-
-CASES = [(m, label) for m in SPATIAL for label in robots(m)]
+CASES = [(m, label) for m in SPATIAL for label in (*ROBOTS.get(m.name, {}), "bare", "random")]
+"""Robots by their published dimensions; with equal links and nothing else; random ones."""
 
 
 @pytest.fixture(params=CASES, ids=lambda c: f"{c[0].name}-{c[1]}")
@@ -52,7 +46,9 @@ def one(request: pytest.FixtureRequest) -> Machine:
 @cache
 def robot_of(mechanism: Mechanism, label: str) -> Machine:
     """One of them."""
-    return robots(mechanism)[label]
+    if label in ("bare", "random"):
+        return bare_machine(mechanism) if label == "bare" else machines_of(mechanism)[-1]
+    return machine(mechanism, label, ROBOTS[mechanism.name][label])
 
 
 def grid(one: Machine) -> Array:

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 import softkin
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Kind, Mechanism
 from tests.catalogue.machines import Machine
+from tests.mechanisms import catalogue
 
 PACKAGE = Path(softkin.__file__).resolve().parents[1]
 IMPORT = """

@@ -8,18 +8,25 @@ import softkin
 from softkin import Status
 
 from derive.description.mechanism import Mechanism
-from tests.catalogue.cornered import APART, KR6_D3, PAIRED, SPECIAL, places, poses
+from tests.catalogue.cornered import APART, CANDIDATES, KR6_D3, PAIRED, SPECIAL, places, poses
 from tests.catalogue.corners import factor_program
 from tests.catalogue.robots import UR5
 
 UR5_IN_METRES = {"d1": 0.089159, "a2": -0.425, "a3": -0.39225, "d4": 0.10915, "d5": 0.09465, "d6": 0.0823}
 BOUND = 3e-11
 """Of what is missed: two free angles at their thresholds of 1e-11, either of them a chord of 2."""
+
+
 @pytest.fixture(params=PAIRED, ids=lambda m: m.name)
 def paired(request: pytest.FixtureRequest) -> Mechanism:
     """A mechanism with two factors or more."""
     chosen: Mechanism = request.param
     return chosen
+
+
+@pytest.mark.parametrize("candidate", CANDIDATES, ids=lambda m: m.name)
+def test_every_mechanism_with_pairs_is_here(candidate: Mechanism) -> None:
+    assert (candidate in PAIRED) == (len(factor_program(candidate).outputs) > 1)
 
 
 def test_corners_are_found(paired: Mechanism) -> None:

@@ -16,13 +16,13 @@ import pytest
 import softkin
 from softkin import KinematicsError
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Joint, Mechanism, Role
 from derive.ir.program import Status
 from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from tests.catalogue.machines import LENGTHS
 from tests.catalogue.many_digits import DIGITS, Number, evaluate_exactly, run_exactly
+from tests.mechanisms import catalogue
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 

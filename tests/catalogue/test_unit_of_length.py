@@ -12,10 +12,10 @@ import pytest
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism, Role
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import LENGTHS
+from tests.mechanisms import catalogue
 
 CATALOGUE = tuple(m for _, m in catalogue() if m.joints)
 SHARED = {"Kin_Delta_P3C_Type3": {"azimuth_1": 0.0, "azimuth_2": 110.0, "azimuth_3": -120.0}}

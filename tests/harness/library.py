@@ -42,12 +42,18 @@ def compile_st(
     for space, declarations in _stub_declarations(max_config_data).items():
         universe.add(list(declarations), space)
         library_declarations += declarations
-    own = [declaration for file, text in texts.items() for declaration in parse(text, file)]
+    own = [declaration for file, text in texts.items() for declaration in _declarations(text, file)]
     universe.add(own, "")
     everything = library_declarations + own
     facts = check(universe, everything)
     source = translate(universe, everything, facts, stubs.EXTRA_INITIALISATION)
     return Library(universe, own, source, stubs.MatrixAccess(order), matrix_size, instrument)
+
+
+@lru_cache(maxsize=64)
+def _declarations(text: str, file: str) -> tuple[ast.Declaration, ...]:
+    """A text that stands in many libraries is parsed once: nobody writes into a syntax tree."""
+    return tuple(parse(text, file))
 
 
 @lru_cache

@@ -10,9 +10,9 @@ import numpy as np
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Joint, Mechanism, Role
 from tests.harness.library import Library
+from tests.mechanisms import catalogue
 from tests.text import values
 
 Range = tuple[float, float] | None

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism
 from derive.ir.primitives import (
     Atan2,
@@ -39,6 +38,7 @@ from derive.kinematics.parameters import (
 )
 from derive.kinematics.sampling import sample_axes
 from derive.report.cost import Cost, cost_of, expression_cost, solve_cost
+from tests.mechanisms import catalogue
 from tests.text.controller import OK, Controller
 from tests.text.counting import counted, counting_units
 from tests.text.samples import NO_TURN

@@ -7,15 +7,15 @@ import pytest
 from derive.description.mechanism import Mechanism
 from tests.text.comparisons import COMPARISONS, POSELESS
 from tests.text.twins import MECHANISMS, twins_of
-from tests.text.units import compiled
+from tests.text.units import compiled, public_methods
 
-METHODS = [
-    (mechanism, method.name)
-    for mechanism in MECHANISMS
-    for method in compiled(mechanism).objects[mechanism.block_name].methods
-    if method.access != "PRIVATE"
-]
+METHODS = [(mechanism, method) for mechanism in MECHANISMS for method in public_methods(mechanism)]
 """Every method that stands in the emitted text. That private ones run is shown statement by statement elsewhere."""
+
+
+def test_every_method_is_here(mechanism: Mechanism) -> None:
+    methods = compiled(mechanism).objects[mechanism.block_name].methods
+    assert public_methods(mechanism) == tuple(m.name for m in methods if m.access != "PRIVATE")
 
 
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])

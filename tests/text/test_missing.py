@@ -10,11 +10,11 @@ import softkin
 import sympy as sp
 from softkin import Diagnosis, KinematicsError, Status
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism, Rod, X, Y, Z
 from derive.ir.constants import (
     DEGREE,
 )
+from tests.mechanisms import catalogue
 from tests.text.samples import NO_TURN
 
 LEGS = tuple(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -35,6 +36,12 @@ def file_of(mechanism: Mechanism) -> str:
 def text_of(mechanism: Mechanism) -> str:
     """The text of a mechanism's unit."""
     return (FOLDER / mechanism.family / file_of(mechanism)).read_text(encoding="utf-8")
+
+
+@cache
+def public_methods(mechanism: Mechanism) -> tuple[str, ...]:
+    """The methods of a mechanism's unit that are not private, read from their first lines: nothing is parsed for a list."""
+    return tuple(re.findall(r"^METHOD PUBLIC (\w+)", text_of(mechanism), re.MULTILINE))
 
 
 def compiled(mechanism: Mechanism, order: str = "rows", matrix_size: int = 72, max_config_data: int = 31) -> Library:

@@ -10,9 +10,9 @@ import softkin
 from numpy.random import Generator
 from softkin import Status
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism, Role, Turning
 from tests.catalogue.closure import Array, Closure
+from tests.mechanisms import catalogue
 
 EVERYTHING = {m.name: m for _, m in catalogue()}
 POSITIONS = tuple(m for m in EVERYTHING.values() if m.task.position and m.task.turning in (Turning.NONE, Turning.ABOUT_Z))

@@ -10,8 +10,8 @@ import numpy as np
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Joint, Mechanism
+from tests.mechanisms import catalogue
 
 MECHANISMS = tuple(m for _, m in catalogue() if m.period_joints)
 FULL = ("Kin_Scara2_Z", "Kin_ArticulatedRobot_6DOF")

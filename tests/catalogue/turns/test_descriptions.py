@@ -6,11 +6,11 @@ import re
 
 import pytest
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism, Role
 from derive.emit.st.names import input_name
 from derive.kinematics.parameters import machine_parameters
 from tests.catalogue.turns.axes import robot_of
+from tests.mechanisms import catalogue
 from tests.text.controller import NOT_INITIALIZED, OK, Controller
 from tests.text.units import compiled, text_of
 from tests.text.values import PROPERTIES_TYPE, meaningless

@@ -19,7 +19,7 @@ from tests.text.comparisons import initialize
 from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE
 from tests.text.coupling.blocks import IDENTITY, ORIENTATIONS, Image, Twins, twins_of
 from tests.text.samples import HALF_TURN, Rows, Sample, tilted
-from tests.text.units import compiled
+from tests.text.units import compiled, public_methods
 
 INVALID = "SMC_TRAFO_INVALID_COUPLING"
 GARBAGE = (math.nan, math.inf, -math.inf, 1e300, 1.1e9)
@@ -156,12 +156,13 @@ COMPARISONS = COMMON | {
     "GetOrientationImageTotal": total,
     "GetOrientationImageWithOri": with_orientation,
 }
-METHODS = [
-    (mechanism, method.name)
-    for mechanism in ORIENTATIONS
-    for method in compiled(mechanism).objects[mechanism.block_name].methods
-    if method.access != "PRIVATE"
-]
+METHODS = [(mechanism, method) for mechanism in ORIENTATIONS for method in public_methods(mechanism)]
+
+
+@pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
+def test_every_method_is_here(mechanism: Mechanism) -> None:
+    methods = compiled(mechanism).objects[mechanism.block_name].methods
+    assert public_methods(mechanism) == tuple(m.name for m in methods if m.access != "PRIVATE")
 
 
 @pytest.mark.parametrize("order", ORDERS)

@@ -11,10 +11,10 @@ import softkin
 from numpy.random import Generator
 from softkin import KinematicsError, Status
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism, Parameter, Role
 from derive.kinematics.parameters import machine_parameters
 from tests.harness.library import Library
+from tests.mechanisms import catalogue
 from tests.text.controller import OK, Controller
 from tests.text.samples import Sample, tilted
 from tests.text.units import compiled

@@ -8,14 +8,9 @@ from derive.description.mechanism import Mechanism
 from tests.text.comparisons import POSELESS
 from tests.text.loops.answers import COMPARISONS
 from tests.text.loops.machines import LOOPS, loops_of
-from tests.text.units import compiled
+from tests.text.units import compiled, public_methods
 
-METHODS = [
-    (mechanism, method.name)
-    for mechanism in LOOPS
-    for method in compiled(mechanism).objects[mechanism.block_name].methods
-    if method.access != "PRIVATE"
-]
+METHODS = [(mechanism, method) for mechanism in LOOPS for method in public_methods(mechanism)]
 EVERYWHERE = (
     "AxesToCartesian",
     "CartesianToAxes",
@@ -30,6 +25,11 @@ EVERYWHERE = (
 
 def test_every_loop_is_here() -> None:
     assert len(LOOPS) == 11
+
+
+def test_every_method_is_here(mechanism: Mechanism) -> None:
+    methods = compiled(mechanism).objects[mechanism.block_name].methods
+    assert public_methods(mechanism) == tuple(m.name for m in methods if m.access != "PRIVATE")
 
 
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import softkin
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Array
+from tests.mechanisms import catalogue
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 

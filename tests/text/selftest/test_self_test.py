@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism
 from tests.harness.library import Library, compile_st
+from tests.mechanisms import catalogue
 from tests.text.breakage import MECHANISM, WRONG, texts
 from tests.text.selftest.planted import planted
 from tests.text.units import FOLDER, file_of, shared_texts, text_of

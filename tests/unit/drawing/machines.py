@@ -7,11 +7,11 @@ from functools import cache
 
 import numpy as np
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism
 from derive.drawing.drawing import Drawing, drawing_of
 from derive.kinematics.build import build
 from derive.witness.closure import Closure, closure_of
+from tests.mechanisms import catalogue
 
 CATALOGUE = {mechanism.name: mechanism for _, mechanism in catalogue()}
 KINDS = (

@@ -12,8 +12,8 @@ from softkin import KinematicsError, Mechanism, Solution, Status
 from softkin._batch import CHUNK
 from softkin._configuration import slots
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism as Description
+from tests.mechanisms import catalogue
 
 DESCRIPTIONS = [m for _, m in catalogue() if not m.is_orientation or m.joints]
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

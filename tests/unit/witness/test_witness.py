@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from derive.description.catalogue import MECHANISMS, Entry, catalogue, load
+from derive.description.catalogue import MECHANISMS, Entry, load
 from derive.ir.program import (
     Let,
     Output,
@@ -23,6 +23,7 @@ from derive.ir.symbols import (
 from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.witness import Disagreement, decade, witness
+from tests.mechanisms import catalogue
 
 SCARA = "kin_scara4_zccoupled_type1"
 Change = Callable[[sp.Expr], sp.Expr]

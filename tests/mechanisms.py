@@ -1,0 +1,29 @@
+"""The catalogue, loaded once for all tests of a process, and its mechanisms, each built once."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from derive.description import catalogue as description
+from derive.description.catalogue import Entry
+from derive.description.mechanism import Mechanism
+from derive.kinematics.build import build
+from derive.kinematics.kinematics import Kinematics
+
+
+@cache
+def catalogue() -> tuple[Entry, ...]:
+    """Every mechanism of the catalogue with its file."""
+    return description.catalogue()
+
+
+@cache
+def named(name: str) -> Mechanism:
+    """The mechanism of that name."""
+    return next(mechanism for _, mechanism in catalogue() if mechanism.name == name)
+
+
+@cache
+def kinematics_of(mechanism: Mechanism) -> Kinematics:
+    """All programs of a mechanism."""
+    return build(mechanism)
