@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from contextlib import AbstractContextManager
+from functools import cached_property, lru_cache
 from itertools import count
+from types import CodeType
 from typing import Any
 
 from . import ast, python_names, stubs
@@ -14,6 +16,7 @@ from .check_expressions import block_parameters
 from .faults import Place, StError, StFault
 from .initial_values import default, initial
 from .instance import Entry, Function, Instance, Origin
+from .marks import marked, marked_code
 from .parse import parse
 from .runtime import ENVIRONMENT, Cell, Matrix
 from .translate import translate
@@ -129,6 +132,14 @@ class Library:
         if not isinstance(found, types.Routine):
             raise KeyError(f"{name} is no function")
         return Function(self._entry(self._names[python_names.function(found)], found), self.origin)
+
+    def watched(self, note: Callable[[int], object]) -> AbstractContextManager[None]:
+        """While this is open, every statement that runs calls `note` with its line in the translation."""
+        return marked(self._names, self._marked_code, note)
+
+    @cached_property
+    def _marked_code(self) -> dict[str, CodeType]:
+        return marked_code(self.python, self.origin.filename)
 
     def constant(self, name: str) -> Any:
         """The value of a global variable or constant."""

@@ -1,0 +1,69 @@
+"""The translation of a text with a note before every statement: which ones run is known at the cost of a call each."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from types import CodeType, FunctionType
+from typing import Any
+
+NOTE = "_note"
+"""How the translation calls what notes a line."""
+
+
+def marked_code(source: str, filename: str) -> dict[str, CodeType]:
+    """The code of every function of a translation by its qualified name, with a note of the line before every statement."""
+    tree = ast.parse(source, filename)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
+            _mark(node)
+    found: dict[str, CodeType] = {}
+    _collect(compile(tree, filename, "exec"), found)
+    return found
+
+
+def _mark(node: ast.AST) -> None:
+    """Put notes into the bodies of a statement, and of the statements in them."""
+    for name in ("body", "orelse", "finalbody"):
+        statements = getattr(node, name, None)
+        if isinstance(statements, list):
+            for statement in statements:
+                if not isinstance(statement, ast.FunctionDef):
+                    _mark(statement)
+            setattr(node, name, [part for statement in statements for part in (_note(statement), statement)])
+
+
+def _note(statement: ast.stmt) -> ast.stmt:
+    call = ast.Call(ast.Name(NOTE, ast.Load()), [ast.Constant(statement.lineno)], [])
+    return ast.fix_missing_locations(ast.copy_location(ast.Expr(call), statement))
+
+
+def _collect(code: CodeType, found: dict[str, CodeType]) -> None:
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            found[constant.co_qualname] = constant
+            _collect(constant, found)
+
+
+@contextmanager
+def marked(names: dict[str, Any], codes: Mapping[str, CodeType], note: Callable[[int], object]) -> Iterator[None]:
+    """The functions among the names of a translation, and those of its classes, with these codes; afterwards as before."""
+    before = {function: function.__code__ for function in _functions(names) if function.__code__.co_qualname in codes}
+    names[NOTE] = note
+    for function in before:
+        function.__code__ = codes[function.__code__.co_qualname]
+    try:
+        yield
+    finally:
+        for function, code in before.items():
+            function.__code__ = code
+
+
+def _functions(names: Mapping[str, Any]) -> Iterator[FunctionType]:
+    """The functions that were defined in a translation: their globals are its names."""
+    for value in list(names.values()):
+        members = list(vars(value).values()) if isinstance(value, type) else [value]
+        for member in members:
+            if isinstance(member, FunctionType) and member.__globals__ is names:
+                yield member
