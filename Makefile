@@ -9,7 +9,7 @@ READY := $(ENVIRONMENT)/ready
 
 BENCH := .venv-bench
 
-.PHONY: generate check test bench
+.PHONY: generate check test quick bench
 
 generate: $(READY)
 	$(RUN) -m derive generate $(OPTIONS)
@@ -18,7 +18,10 @@ check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
 
 test: $(READY)
-	$(RUN) -m pytest -n 2
+	$(RUN) -m pytest -n 2 --dist loadgroup
+
+quick: $(READY)
+	$(RUN) -m pytest -n 2 --dist loadgroup -m quick tests/unit tests/harness tests/catalogue tests/text
 
 bench: $(BENCH)/ready
 	PYTHONPATH=generated/python $(BENCH)/bin/python -m bench

@@ -1,6 +1,63 @@
-"""One profile for all property tests: the same examples on every machine, and no time limit on a shared one."""
+"""One profile for all property tests: the same examples on every machine, and no time limit on a shared one.
 
+Every test is given its mechanism, where it has one. Tests of one mechanism run in one process, so that what they share is
+made once; and `make quick` runs all units, and of the catalogue one mechanism for each path through the compiler.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
 from hypothesis import settings
+
+from tests.mechanisms import catalogue
 
 settings.register_profile("softkin", deadline=None, derandomize=True)
 settings.load_profile("softkin")
+
+ROOT = Path(__file__).parent
+ALL_OF_THEM_QUICK = ("unit", "harness")
+"""The folders whose tests are quick whatever they are about, but for those that are marked as slow."""
+OF_ONE_MECHANISM = {"hexapod": "Kin_Hexapod", "search": "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"}
+"""Folders of tests about one mechanism, which their parameters do not name."""
+PATHS = {
+    "Kin_Gantry3": "slides alone",
+    "Kin_Scara4_ZCcoupled_Type1": "a serial arm in a plane, with turns and a coupled axis",
+    "Kin_Pos_RRR": "a serial arm in space",
+    "Kin_P2C_Type1": "a closed loop",
+    "Kin_Hexapod": "a plate that moves with its whole pose",
+    "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": "an arm that is searched along",
+    "Kin_Wrist2": "orientation kinematics, and couplings with it",
+}
+"""The paths through the compiler, and a mechanism that goes along each."""
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark the quick tests, and tell xdist which tests share what they make."""
+    is_shared_out = hasattr(config, "workerinput")
+    for item in items:
+        folders = item.path.relative_to(ROOT).parts[:-1]
+        names = mechanisms_of(item, folders)
+        if (set(names) <= PATHS.keys() and names) or folders[:1] in [(f,) for f in ALL_OF_THEM_QUICK]:
+            if item.get_closest_marker("slow") is None:
+                item.add_marker("quick")
+        if is_shared_out:
+            item.add_marker(pytest.mark.xdist_group(names[0] if names else str(item.path.relative_to(ROOT))))
+
+
+def mechanisms_of(item: pytest.Item, folders: tuple[str, ...]) -> list[str]:
+    """The names of the mechanisms that a test's parameters name, or that its folder is about."""
+    callspec = getattr(item, "callspec", None)
+    words = re.findall(r"\w+", callspec.id) if callspec is not None else []
+    found = [_names()[word] for word in words if word in _names()]
+    return found or [OF_ONE_MECHANISM[folder] for folder in folders if folder in OF_ONE_MECHANISM]
+
+
+@cache
+def _names() -> dict[str, str]:
+    """The name of a mechanism by its own and by that of its block."""
+    mechanisms = [mechanism for _, mechanism in catalogue()]
+    return {word: m.name for m in mechanisms for word in (m.name, m.block_name, f"{m.block_name}_SelfTest")}
