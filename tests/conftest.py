@@ -41,9 +41,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         folders = item.path.relative_to(ROOT).parts[:-1]
         names = mechanisms_of(item, folders)
-        if (set(names) <= PATHS.keys() and names) or folders[:1] in [(f,) for f in ALL_OF_THEM_QUICK]:
-            if item.get_closest_marker("slow") is None:
-                item.add_marker("quick")
+        is_chosen = (set(names) <= PATHS.keys() and names) or folders[:1] in [(f,) for f in ALL_OF_THEM_QUICK]
+        if is_chosen and item.get_closest_marker("slow") is None:
+            item.add_marker("quick")
         if is_shared_out:
             item.add_marker(pytest.mark.xdist_group(names[0] if names else str(item.path.relative_to(ROOT))))
 

@@ -1,0 +1,120 @@
+"""The machines that are asked: dimensions (millimetres, degrees) of every mechanism, and pairs that are coupled."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+_TRIANGLE = {"rail_x_1": 0.0, "rail_y_1": 150.0, "rail_x_2": -130.0, "rail_y_2": -75.0, "rail_x_3": 130.0, "rail_y_3": -75.0}
+_DELTA = {
+    f"{name}_{i}": value
+    for name, value in {"base_radius": 140.0, "inner_arm": 200.0, "outer_arm": 450.0, "tcp_radius": 45.0}.items()
+    for i in (1, 2, 3)
+}
+_BASE = ((338.0, -91.0), (338.0, 91.0), (-90.0, 338.0), (-248.0, 247.0), (-248.0, -247.0), (-90.0, -338.0))
+_PLATE = ((142.0, -141.0), (142.0, 141.0), (52.0, 193.0), (-193.0, 52.0), (-193.0, -52.0), (52.0, -193.0))
+_HEXAPOD = {
+    f"{side}_{i}_{letter}": value
+    for side, points in (("base", _BASE), ("platform", _PLATE))
+    for i, point in enumerate(points, 1)
+    for letter, value in zip("xy", point, strict=True)
+} | {"home_z": 600.0}
+
+DIMENSIONS: dict[str, dict[str, float]] = {
+    "Kin_5Axes": {"tool_length": 90.0},
+    "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": {
+        "d1": 615.0, "a1": 100.0, "a2": 705.0, "a3": 135.0, "d4": 755.0, "j6_offset_x": 60.0, "d6": 85.0,
+    },
+    "Kin_Ac6_ThreeParallel": {"d1": 89.159, "a2": -425.0, "a3": -392.25, "d4": 109.15, "d5": 94.65, "d6": 82.3},
+    "Kin_Ac6_TXTYTZRYRXRZ": {"flange_x": 40.0, "flange_y": -25.0, "flange_z": -120.0},
+    "Kin_ArticulatedRobot_6DOF": {"d1": 350.0, "a1": 80.0, "a2": 310.0, "d3": 50.0, "a3": 30.0, "d4": 290.0, "d6": 75.0},
+    "Kin_Bipod_Rotary": {"inner_arm": 250.0, "outer_arm": 500.0, "displacement": 120.0, "tcp_displacement": 40.0},
+    "Kin_CAxis": {},
+    "Kin_CAxis_Tool": {"tool_x": 15.0, "tool_y": -8.0, "tool_z": -60.0},
+    "Kin_Crane": {},
+    "Kin_Delta_P3C_Type3": {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": -90.0, **_DELTA},
+    "Kin_Gantry2": {},
+    "Kin_Gantry3": {},
+    "Kin_GantryCutter2": {"direction_r": 1.0},
+    "Kin_GantryCutter3": {"direction_r": 1.0},
+    "Kin_Hexapod": _HEXAPOD,
+    "Kin_HGantry2": {},
+    "Kin_HGantry3": {},
+    "Kin_P2C_Type1": {"inner_arm": 250.0, "outer_arm": 500.0, "displacement": 120.0, "tcp_displacement": 40.0},
+    "Kin_P2C_Type2": {"inner_arm": 250.0, "outer_arm": 500.0, "displacement": 120.0, "tcp_link_distance": 80.0},
+    "Kin_P2X_Type1": {
+        "arm_length_1": 400.0, "arm_length_2": 380.0, "rail_y_2": 20.0, "tcp_offset_1": 30.0, "tcp_offset_2": 30.0,
+    },
+    "Kin_P2X_Type2": {"arm_length": 400.0, "tcp_link_distance": 60.0},
+    "Kin_P2Y": {},
+    "Kin_PCC": {"link_length_1": 300.0, "link_length_2": 250.0},
+    "Kin_Polar": {},
+    "Kin_Polar_Z": {},
+    "Kin_Pos_RRR": {"d1": 350.0, "a1": 80.0, "a2": 310.0, "d3": 50.0, "a3": 30.0, "d4": 290.0},
+    "Kin_Scara2_Z": {"arm_length_1": 300.0, "arm_length_2": 250.0},
+    "Kin_Scara3_CCZ": {"link_length_1": 325.0, "link_length_2": 225.0},
+    "Kin_Scara3_Z": {"arm_length_1": 300.0, "arm_length_2": 250.0, "arm_length_3": 80.0},
+    "Kin_Scara3_ZCCC": {"link_length_1": 325.0, "link_length_2": 225.0, "link_length_3": 60.0},
+    "Kin_Scara4_ZCCC": {"link_length_1": 325.0, "link_length_2": 225.0, "link_length_3": 60.0},
+    "Kin_Scara4_CCZC_ZCcoupled": {
+        "link_length_1": 325.0, "link_length_2": 225.0, "pitch_zc": 20.0, "gear_coupling": 0.0, "flange_down": 1.0,
+    },
+    "Kin_Scara4_ZCcoupled_Type1": {"link_length_1": 325.0, "link_length_2": 225.0, "pitch_zc": 20.0},
+    "Kin_SCCC": {
+        "link_length_1": 300.0, "link_length_2": 250.0, "link_length_3": 80.0,
+        "coupling_12": -1.0, "coupling_13": 0.5, "coupling_23": -1.0,
+    },
+    "Kin_TGantry2": {},
+    "Kin_TGantry3": {},
+    "Kin_Tool": {"tool_x": 15.0, "tool_y": -8.0, "tool_z": -60.0},
+    "Kin_Tripod_Linear": {
+        "outer_radius": 300.0, "inner_radius": 60.0, "arm_length": 400.0, "rail_angle": 30.0, "max_angle_ball_joint": 45.0,
+    },
+    "Kin_Tripod_P3Z": {"arm_length": 269.0, "tcp_displacement": 20.0, **_TRIANGLE},
+    "Kin_Tripod_Rotary": {
+        "arm_length_1": 200.0, "arm_length_2": 450.0, "arm_1_radius": 140.0, "stewart_radius": 50.0, "distance": 40.0,
+        "max_angle_ball_joint": 45.0,
+    },
+    "Kin_Wrist2": {"tool_length": 90.0, "roll_axis_offset_x": 12.0, "roll_axis_offset_y": -7.0, "roll_axis_offset_z": -40.0},
+    "Kin_Wrist3": {"tool_offset_x": 10.0, "tool_offset_y": -6.0, "tool_offset_z": 75.0},
+    "MC_KIN_TYPE_12_XY": {
+        "link_length_1": 300.0, "link_length_2": 350.0, "link_length_3": 110.0, "link_length_4": 280.0, "link_length_5": 90.0,
+    },
+}  # fmt: skip
+
+ALSO: dict[str, tuple[dict[str, float], ...]] = {
+    "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": ({"j6_offset_x": 0.0}, {"j6_offset_x": -20.0, "a3": -50.0}),
+    "Kin_Ac6_ThreeParallel": ({"d4": 0.0}, {"a3": -425.0, "d4": 0.0}),
+    "Kin_ArticulatedRobot_6DOF": ({"d1": 400.0, "a1": 25.0, "a2": 455.0, "d3": 0.0, "a3": 35.0, "d4": 420.0, "d6": 80.0},
+                                  {"a1": 0.0, "d3": 0.0, "a3": 0.0, "a2": 290.0}),
+    "Kin_Pos_RRR": ({"a1": 0.0, "d3": 0.0, "a3": 0.0, "a2": 290.0},),
+    "Kin_Scara3_CCZ": ({"link_length_2": 325.0},),
+    "Kin_Scara4_ZCcoupled_Type1": ({"pitch_zc": 0.0}, {"link_length_2": 325.0}),
+    "Kin_Scara4_CCZC_ZCcoupled": ({"flange_down": 0.0, "gear_coupling": 0.2, "pitch_zc": 0.0},),
+    "Kin_SCCC": ({"link_length_3": 0.0}, {"link_length_2": 300.0, "coupling_12": 0.0, "coupling_13": 0.0}),
+    "Kin_PCC": ({"link_length_2": 300.0},),
+    "Kin_Wrist2": ({"tool_side": -1.0},),
+    "Kin_5Axes": ({"tool_side": -1.0},),
+    "Kin_GantryCutter3": ({"direction_r": -1.0},),
+    "MC_KIN_TYPE_12_XY": ({"swap_xy": 1.0},),
+    "Kin_Hexapod": ({"max_angle_base_joint": 35.0, "max_angle_platform_joint": 40.0},),
+}  # fmt: skip
+"""Further machines of some mechanisms, by what differs: equal links, nothing sideways, the other side."""
+
+Part = tuple[str, Mapping[str, float]]
+COUPLED: dict[str, tuple[Part, Part]] = {
+    "Coupled_Gantry3_Wrist2": (("Kin_Gantry3", {}), ("Kin_Wrist2", DIMENSIONS["Kin_Wrist2"])),
+    "Coupled_Delta_CAxis_Tool": (
+        ("Kin_Delta_P3C_Type3", DIMENSIONS["Kin_Delta_P3C_Type3"]), ("Kin_CAxis_Tool", DIMENSIONS["Kin_CAxis_Tool"]),
+    ),
+    "Coupled_Scara3_CCZ_CAxis_Tool": (
+        ("Kin_Scara3_CCZ", DIMENSIONS["Kin_Scara3_CCZ"]), ("Kin_CAxis_Tool", {"tool_z": -60.0}),
+    ),
+    "Coupled_Scara4_Tool": (
+        ("Kin_Scara4_ZCcoupled_Type1", DIMENSIONS["Kin_Scara4_ZCcoupled_Type1"]), ("Kin_Tool", {"tool_z": -60.0}),
+    ),
+    "Coupled_Tripod_Tool": (("Kin_Tripod_P3Z", DIMENSIONS["Kin_Tripod_P3Z"]), ("Kin_Tool", DIMENSIONS["Kin_Tool"])),
+    "Coupled_Pos_RRR_Wrist3": (("Kin_Pos_RRR", DIMENSIONS["Kin_Pos_RRR"]), ("Kin_Wrist3", {})),
+    "Coupled_Polar_Z_Wrist2": (
+        ("Kin_Polar_Z", {}), ("Kin_Wrist2", {"tool_length": 90.0, "roll_axis_offset_z": -40.0}),
+    ),
+}  # fmt: skip
