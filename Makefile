@@ -5,6 +5,8 @@ RUN := $(ENVIRONMENT)/bin/python
 # For an older SoftMotion: make generate PROFILE=before_4_11. The profiles stand in templates/st/softmotion.toml.
 PROFILE ?=
 OPTIONS := $(if $(PROFILE),--profile $(PROFILE))
+# make generate FRESH=1 derives everything; else what did not change is taken from generated.cache/.
+FRESH ?=
 READY := $(ENVIRONMENT)/ready
 
 BENCH := .venv-bench
@@ -12,7 +14,7 @@ BENCH := .venv-bench
 .PHONY: generate check test quick bench
 
 generate: $(READY)
-	$(RUN) -m derive generate $(OPTIONS)
+	$(RUN) -m derive generate $(OPTIONS) $(if $(FRESH),--fresh)
 
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)

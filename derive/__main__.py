@@ -1,4 +1,8 @@
-"""The command line: `python -m derive generate` writes `generated/`, `python -m derive check` compares it."""
+"""The command line: `python -m derive generate` writes `generated/`, `python -m derive check` compares it.
+
+`generate` keeps what it derived beside the output folder, and derives again only what depends on something that changed;
+`--fresh` neither reads nor writes that cache, and `check` never does.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +11,12 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from derive.cache import Cache, foundation
 from derive.description.catalogue import MECHANISMS, Entry, catalogue
 from derive.description.mechanism import DescriptionError
 from derive.output import ForeignFolder, differences, replace_folder
-from derive.pipeline import Built, GenerationError, derive_all, languages, render_all
+from derive.pipeline import Built, GenerationError, derive_all, files_of, languages, work_of
+from derive.progress import Progress
 
 OUTPUT = MECHANISMS.parents[1] / "generated"
 
@@ -37,9 +43,10 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         command.add_argument("--output", type=Path, default=OUTPUT, metavar="DIR", help="the output folder")
         command.add_argument("--mechanisms", type=Path, default=MECHANISMS, metavar="DIR", help="the descriptions")
         command.add_argument("--profile", metavar="NAME", help="a profile of templates/st/softmotion.toml, for an older library")
-        command.set_defaults(only=[])
+        command.set_defaults(only=[], fresh=True)
         if name == "generate":
             command.add_argument("--only", nargs="+", metavar="NAME", help="these mechanisms alone, into another folder")
+            command.add_argument("--fresh", action="store_true", default=False, help="derive everything, without the cache")
     return parser.parse_args(arguments)
 
 
@@ -47,7 +54,8 @@ def _generate(options: argparse.Namespace) -> int:
     if options.only and options.output == OUTPUT:
         raise GenerationError("--only needs --output: the output folder of the project holds every mechanism")
     files = _files(options)
-    replace_folder(options.output, files)
+    if any(differences(options.output, files)):
+        replace_folder(options.output, files)
     print(f"{len(files)} files in {options.output}")
     return 0
 
@@ -62,12 +70,29 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _files(options: argparse.Namespace) -> dict[str, bytes]:
+    """All files of a run, from the cache what it has."""
     outputs = languages(options.profile)
+    cache = None if options.fresh else Cache(Path(f"{options.output}.cache"))
+    before = foundation(options.profile) if cache else ""
+    work = work_of(_chosen(catalogue(options.mechanisms), options.only), cache, before)
     built = []
-    for one in derive_all(_chosen(catalogue(options.mechanisms), options.only)):
-        print(_progress(one), flush=True)
+    progress = Progress(len(work.missing), sys.stdout)
+    for key, one in zip(work.keys, derive_all(work, options.profile), strict=True):
+        progress.step(_line(one), one.seconds is not None)
+        if cache and key and one.seconds is not None and foundation(options.profile) == before:
+            cache.write(key, one.as_plain())
         built.append(one)
-    return render_all(built, outputs)
+    progress.end()
+    if cache:
+        cache.tidy()
+        for path in cache.damaged:
+            print(f"note: {path} is damaged, and was not used", file=sys.stderr)
+    return files_of(built, outputs)
+
+
+def _line(one: Built) -> str:
+    time = "kept" if one.seconds is None else f"{one.seconds:.2f} s"
+    return f"{one.derived} {time:>8}   {one.measured}"
 
 
 def _chosen(entries: tuple[Entry, ...], names: Sequence[str]) -> tuple[Entry, ...]:
@@ -76,17 +101,6 @@ def _chosen(entries: tuple[Entry, ...], names: Sequence[str]) -> tuple[Entry, ..
         if name not in known:
             raise GenerationError(f"no mechanism is called {name!r}; there are {', '.join(known)}")
     return tuple(e for e in entries if not names or e[1].name in names)
-
-
-def _progress(one: Built) -> str:
-    seen = one.evidence
-    cost = f"{one.kinematics.mechanism.name:28}{one.statements:5} statements {one.seconds:6.2f} s"
-    poses = f"   {seen.poses} poses  closure {seen.closure_residual:.0e}"
-    if seen.inverted is None:
-        return cost + poses
-    found = seen.inverted
-    solutions = f"{found.solutions} solution{'' if found.solutions == 1 else 's'}"
-    return f"{cost}{poses}  round trip {found.round_trip:.0e}  Jacobian {found.jacobian:.0e}  {solutions}"
 
 
 if __name__ == "__main__":

@@ -1,26 +1,27 @@
-"""From mechanisms to files: derive, ask the witness, render. Two processes share the mechanisms, then the languages."""
+"""From mechanisms to files: derive, ask the witness, write. Two processes share the mechanisms that are not kept."""
 
 from __future__ import annotations
 
 import time
 import traceback
+from base64 import b64decode, b64encode
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
+from derive.cache import Cache, entry_key
 from derive.description.catalogue import Entry
 from derive.description.mechanism import DescriptionError, Mechanism
-from derive.emit.language import Language
+from derive.emit.language import Language, Part
 from derive.emit.python import package as python
 from derive.emit.softmotion.library import StructuredTextFiles
-from derive.emit.softmotion.pictures import pictures_of
 from derive.ir.verify import BrokenProgram
-from derive.kinematics.build import build
 from derive.kinematics.kinematics import Evidence, Kinematics
-from derive.report.self_test import self_test
 from derive.solver.solve import Unsolved
-from derive.witness import Disagreement, witness
+from derive.witness.disagreement import Disagreement
 
 PROCESSES = 2
 _EXPECTED = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
@@ -33,39 +34,82 @@ class GenerationError(Exception):
 
 @dataclass(frozen=True)
 class Built:
-    """One derived mechanism, witnessed, and what it took."""
+    """What came of one mechanism, as plain data."""
 
-    kinematics: Kinematics
-    evidence: Evidence
-    seconds: float
-    pictures: Mapping[str, bytes] = field(default_factory=dict)
+    derived: str
+    """What was derived, for the line that says so."""
+    measured: str
+    """What the witness measured, for the same line."""
+    seconds: float | None
+    """How long it took; None where it was kept from an earlier run."""
+    parts: Mapping[str, Part]
+    """What every language writes of it, by the name of the language."""
+    pictures: Mapping[str, bytes]
     """Path below the output folder → bytes. They are made where the mechanism is derived: drawing takes as long."""
 
+    def as_plain(self) -> dict[str, Any]:
+        """What JSON can hold."""
+        pictures = {name: b64encode(data).decode() for name, data in self.pictures.items()}
+        return {"derived": self.derived, "measured": self.measured, "parts": dict(self.parts), "pictures": pictures}
+
+
+def from_plain(data: Mapping[str, Any]) -> Built:
+    """What `as_plain` gave."""
+    pictures = {name: b64decode(text) for name, text in data["pictures"].items()}
+    return Built(data["derived"], data["measured"], None, data["parts"], pictures)
+
+
+@dataclass(frozen=True)
+class Work:
+    """What has to be derived, and what is kept from earlier runs; all in the order of the catalogue."""
+
+    entries: tuple[Entry, ...]
+    keys: tuple[str | None, ...]
+    kept: tuple[Built | None, ...]
+
     @property
-    def statements(self) -> int:
-        """The statements of all programs."""
-        kinematics = self.kinematics
-        return sum(len(p.body) for p in (kinematics.setup, *kinematics.shared, *kinematics.programs))
+    def missing(self) -> tuple[Entry, ...]:
+        """The mechanisms that have to be derived."""
+        return tuple(entry for entry, kept in zip(self.entries, self.kept, strict=True) if kept is None)
 
 
-def derive_all(entries: Sequence[Entry]) -> Iterator[Built]:
-    """Derive every mechanism, in the order of the catalogue; raises `GenerationError` at the first that cannot be."""
-    with ProcessPoolExecutor(max_workers=min(PROCESSES, len(entries))) as pool:
-        for (path, _), result in zip(entries, pool.map(_attempt, entries), strict=True):
+def work_of(entries: Sequence[Entry], cache: Cache | None, foundation: str) -> Work:
+    """The mechanisms of a run, with what a cache has of them."""
+    keys = tuple(entry_key(foundation, entry) if cache else None for entry in entries)
+    found = [cache.read(key) if cache and key else None for key in keys]
+    return Work(tuple(entries), keys, tuple(None if data is None else from_plain(data) for data in found))
+
+
+def derive_all(work: Work, profile: str | None) -> Iterator[Built]:
+    """Every mechanism, in the order of the catalogue; raises `GenerationError` at the first that cannot be derived."""
+    if not work.missing:
+        yield from (kept for kept in work.kept if kept is not None)
+        return
+    with ProcessPoolExecutor(max_workers=min(PROCESSES, len(work.missing))) as pool:
+        derived = pool.map(partial(_attempt, profile), work.missing)
+        for (path, _), kept in zip(work.entries, work.kept, strict=True):
+            result = next(derived) if kept is None else kept
             if isinstance(result, str):
                 pool.shutdown(cancel_futures=True)
                 raise GenerationError(f"{path}: {result}")
             yield result
 
 
-def derive_one(mechanism: Mechanism) -> Built:
-    """Derive one mechanism, measure it and draw it."""
+def derive_one(mechanism: Mechanism, profile: str | None = None) -> Built:
+    """Derive one mechanism, measure it, draw it, and write it in every language."""
+    # Not loaded where nothing is derived: CasADi and matplotlib take longer to start than the rest of such a run.
+    from derive.emit.softmotion.pictures import pictures_of
+    from derive.kinematics.build import build
+    from derive.report.self_test import self_test
+    from derive.witness import witness
+
     start = time.perf_counter()
-    kinematics = build(mechanism)
-    evidence = witness(kinematics)
-    whole = replace(kinematics, evidence=evidence, self_test=self_test(kinematics))
-    pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in pictures_of(kinematics).items()}
-    return Built(whole, evidence, time.perf_counter() - start, pictures)
+    derived = build(mechanism)
+    evidence = witness(derived)
+    whole = replace(derived, evidence=evidence, self_test=self_test(derived))
+    pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in pictures_of(derived).items()}
+    parts = {language.name: language.part(whole) for language in languages(profile)}
+    return Built(_derived(whole), _measured(evidence), time.perf_counter() - start, parts, pictures)
 
 
 def languages(profile: str | None = None) -> tuple[Language, ...]:
@@ -79,23 +123,34 @@ def languages(profile: str | None = None) -> tuple[Language, ...]:
         raise GenerationError(str(problem)) from None
 
 
-def render_all(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, bytes]:
-    """All generated files: path below the output folder → bytes. Every language is rendered in a process of its own."""
-    kinematics = tuple(b.kinematics for b in built)
-    with ProcessPoolExecutor(max_workers=min(PROCESSES, len(outputs))) as pool:
-        rendered = [pool.submit(language.render, kinematics) for language in outputs]
-        texts = {
-            str(Path(language.name) / name): text.encode()
-            for language, files in zip(outputs, rendered, strict=True)
-            for name, text in sorted(files.result().items())
-        }
+def files_of(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, bytes]:
+    """All generated files: path below the output folder → bytes."""
+    texts = {
+        str(Path(language.name) / name): text.encode()
+        for language in outputs
+        for name, text in sorted(language.files([one.parts[language.name] for one in built]).items())
+    }
     return texts | {name: data for one in built for name, data in one.pictures.items()}
 
 
-def _attempt(entry: Entry) -> Built | str:
+def _derived(kinematics: Kinematics) -> str:
+    statements = sum(len(p.body) for p in (kinematics.setup, *kinematics.shared, *kinematics.programs))
+    return f"{kinematics.mechanism.name:28}{statements:5} statements"
+
+
+def _measured(seen: Evidence) -> str:
+    poses = f"{seen.poses} poses  closure {seen.closure_residual:.0e}"
+    if seen.inverted is None:
+        return poses
+    found = seen.inverted
+    solutions = f"{found.solutions} solution{'' if found.solutions == 1 else 's'}"
+    return f"{poses}  round trip {found.round_trip:.0e}  Jacobian {found.jacobian:.0e}  {solutions}"
+
+
+def _attempt(profile: str | None, entry: Entry) -> Built | str:
     """Derive in a worker process: a problem comes back as text, because not every exception can travel."""
     try:
-        return derive_one(entry[1])
+        return derive_one(entry[1], profile)
     except _EXPECTED as problem:
         return _one_line(problem)
     except Exception as problem:

@@ -35,9 +35,15 @@ def kinematics() -> Kinematics:
     return build(load(MECHANISMS / "kin_scara4_zccoupled_type1.py"))
 
 
+def files_of(profile: str | None, one: Kinematics) -> dict[str, str]:
+    """All files of Structured Text for one mechanism."""
+    language = StructuredTextFiles(profile)
+    return language.files([language.part(one)])
+
+
 @lru_cache
 def rendered(profile: str | None) -> dict[str, str]:
-    return StructuredTextFiles(profile).render((kinematics(),))
+    return files_of(profile, kinematics())
 
 
 def block(profile: str | None) -> ast.Block:
@@ -89,7 +95,7 @@ def test_limits_of_a_block_alone_are_the_same_with_every_profile(profile: str | 
 def test_what_is_left_is_executed(name: str) -> None:
     """A position kinematics, an orientation kinematics and a loop, in the text for an older library: there and back."""
     mechanism = load(MECHANISMS / f"{name}.py")
-    files = StructuredTextFiles("before_4_11").render((kinematics() if "scara4" in name else build(mechanism),))
+    files = files_of("before_4_11", kinematics() if "scara4" in name else build(mechanism))
     machine = Controller(compile_st({n: t for n, t in files.items() if n.endswith(".st")}), mechanism)
     assert machine.initialise({p.name: p.nominal for p in mechanism.parameters}) == OK
     axes = tuple(30.0 if j.is_angle else 5.0 + j.nominal for j in mechanism.joints)

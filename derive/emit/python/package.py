@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from textwrap import wrap
 
 from jinja2 import Environment
 
-from derive.emit.language import GENERATED, environment
+from derive.emit.language import GENERATED, Part, environment
 from derive.emit.python import entries, setup
 from derive.emit.python.calls import every_root
 from derive.emit.python.diagnosis import diagnosis
@@ -96,19 +97,25 @@ _MEANINGS = {
 }
 
 
-def render(kinematics: Sequence[Kinematics]) -> dict[str, str]:
+def part(kinematics: Kinematics) -> Part:
+    """The files of one mechanism, and its entry in the lists."""
+    return {"index": _index(kinematics), "files": _mechanism(_templates(), kinematics)}
+
+
+def files(parts: Sequence[Part]) -> dict[str, str]:
     """All files of the package: path → text."""
     templates = _templates()
-    index = [_index(kin) for kin in kinematics]
+    index = [part["index"] for part in parts]
     files = {path: templates.get_template(f"{path}.j2").render() for path in _FIXED}
     index.sort(key=lambda entry: entry["module"])
     exports = _sorted({*_EXPORTS, *(entry["class_name"] for entry in index)})
     files |= {path: templates.get_template(f"{path}.j2").render(index=index, exports=exports) for path in _INDEXED}
-    for kin in kinematics:
-        files |= _mechanism(templates, kin)
+    for part in parts:
+        files |= part["files"]
     return files
 
 
+@cache
 def _templates() -> Environment:
     templates = environment(name)
     templates.filters |= {"fold": fold, "paragraph": _paragraph, "literal": entries.literal}

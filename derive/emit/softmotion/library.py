@@ -5,18 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import ClassVar
 
 from jinja2 import Environment
 
-from derive.emit.language import GENERATED, TEMPLATES, environment
+from derive.emit.language import GENERATED, TEMPLATES, Part, environment
 from derive.emit.plcopen import document as plcopen
 from derive.emit.plcopen.objects import Object, objects_of, ruled
 from derive.emit.plcopen.uses import needed
-from derive.emit.softmotion.block import block_of
+from derive.emit.softmotion.block import Block, block_of
 from derive.emit.softmotion.description import description
 from derive.emit.softmotion.methods import methods_of
-from derive.emit.softmotion.overview import overview
+from derive.emit.softmotion.overview import row_of
 from derive.emit.softmotion.self_test import FOLDER as SELF_TESTS
 from derive.emit.softmotion.self_test import PROGRAM as SELF_TEST_PROGRAM
 from derive.emit.softmotion.self_test import test_of
@@ -57,42 +58,49 @@ class StructuredTextFiles:
         """Refuse a profile that the contract has not, before anything is derived."""
         load(self.profile)
 
-    def render(self, kinematics: Sequence[Kinematics]) -> dict[str, str]:
+    def part(self, kinematics: Kinematics) -> Part:
+        """The block of one mechanism, its self-test, and its row of the overview."""
+        contract, templates = load(self.profile), _templates()
+        block = block_of(kinematics, contract)
+        found: Part = {"row": row_of(kinematics), "text": _unit(kinematics, block, contract, templates), "test": None}
+        test = test_of(kinematics, block)
+        if test is not None:
+            text = templates.get_template("selftest.st.j2").render(contract.spelling, test=test)
+            found["test"] = {"name": test.name, "block": test.block, "text": text}
+        return found
+
+    def files(self, parts: Sequence[Part]) -> dict[str, str]:
         """All files of the language: path below its folder → text. Raises `DescriptionError` for a name that clashes."""
         contract, templates = load(self.profile), _templates()
-        objects = dict(_objects(kinematics, contract, templates))
+        objects = dict(_objects(parts, contract, templates))
         refuse_clashes({f"{path}.st": inside for path, inside in objects.items()})
         files = {f"{path}.st": f"{_PREAMBLE}\n{ruled(inside)}" for path, inside in objects.items()}
         files |= {f"{path}.xml": text for path, text in _documents(objects)}
-        rows = list(overview(kinematics))
+        rows = sorted((part["row"] for part in parts), key=lambda row: (row["family"], row["block"]))
         for name in ("import_softkin.py", "README.md"):
             files[name] = templates.get_template(f"{name}.j2").render(contract.spelling, overview=rows)
         return dict(sorted(files.items()))
 
 
-def _objects(
-    kinematics: Sequence[Kinematics], contract: Contract, templates: Environment
-) -> Iterator[tuple[str, tuple[Object, ...]]]:
+def _objects(parts: Sequence[Part], contract: Contract, templates: Environment) -> Iterator[tuple[str, tuple[Object, ...]]]:
     """The objects of every file, by its path without the ending."""
     rotation = rotation_function(contract)
     for path in sorted((TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2")):
         text = templates.get_template(f"{_SHARED}/{path.name}").render(contract.spelling, rotation=rotation)
         yield f"{_SHARED}/{path.name.removesuffix('.st.j2')}", objects_of(text)
-    for one in kinematics:
-        yield f"{one.mechanism.family}/{one.mechanism.block_name}", objects_of(_unit(one, contract, templates))
-    yield from _self_tests(kinematics, contract, templates)
+    for part in parts:
+        yield part["row"]["path"], objects_of(part["text"])
+    yield from _self_tests([part["test"] for part in parts if part["test"] is not None], contract, templates)
 
 
 def _self_tests(
-    kinematics: Sequence[Kinematics], contract: Contract, templates: Environment
+    tests: Sequence[Part], contract: Contract, templates: Environment
 ) -> Iterator[tuple[str, tuple[Object, ...]]]:
     """A self-test for every block that has vectors, and the program that runs all of them."""
-    found = [test for one in kinematics if (test := test_of(one, block_of(one, contract))) is not None]
-    for test in found:
-        text = templates.get_template("selftest.st.j2").render(contract.spelling, test=test)
-        yield f"{SELF_TESTS}/{test.name}", objects_of(text)
-    if found:
-        text = templates.get_template("program_selftest.st.j2").render(contract.spelling, tests=found)
+    for test in tests:
+        yield f"{SELF_TESTS}/{test['name']}", objects_of(test["text"])
+    if tests:
+        text = templates.get_template("program_selftest.st.j2").render(contract.spelling, tests=tests)
         yield f"{SELF_TESTS}/{SELF_TEST_PROGRAM}", objects_of(text)
 
 
@@ -112,6 +120,7 @@ def _by_folder(objects: Mapping[str, Sequence[Object]]) -> dict[str, list[Object
     return folders
 
 
+@cache
 def _templates() -> Environment:
     templates = environment(_FOLDER)
     templates.globals.update(
@@ -132,8 +141,7 @@ def _templates() -> Environment:
     return templates
 
 
-def _unit(kinematics: Kinematics, contract: Contract, templates: Environment) -> str:
-    block = block_of(kinematics, contract)
+def _unit(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> str:
     return templates.get_template("block.st.j2").render(
         contract.spelling,
         block=block,

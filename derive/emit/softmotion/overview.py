@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-
 from derive.description.mechanism import Turning
 from derive.emit.softmotion.pictures import FOLDER as PICTURES
 from derive.kinematics.kinematics import Freedom, Kinematics
 
 
-def overview(kinematics: Sequence[Kinematics]) -> Iterator[dict[str, str]]:
-    """One row for every block, in the order of families and names."""
-    for one in sorted(kinematics, key=lambda k: (k.mechanism.family, k.mechanism.block_name)):
-        mechanism = one.mechanism
-        yield {
-            "picture": f"{PICTURES}/{mechanism.block_name}",
-            "path": f"{mechanism.family}/{mechanism.block_name}",
-            "block": mechanism.block_name,
-            "axes": " ".join(joint.name for joint in mechanism.joints) or "none",
-            "tools": _tools(one),
-            "summary": mechanism.summary,
-        }
+def row_of(kinematics: Kinematics) -> dict[str, str]:
+    """The row of one block."""
+    mechanism = kinematics.mechanism
+    return {
+        "family": mechanism.family,
+        "picture": f"{PICTURES}/{mechanism.block_name}",
+        "path": f"{mechanism.family}/{mechanism.block_name}",
+        "block": mechanism.block_name,
+        "axes": " ".join(joint.name for joint in mechanism.joints) or "none",
+        "tools": _tools(kinematics),
+        "summary": mechanism.summary,
+    }
 
 
 def _tools(kinematics: Kinematics) -> str:

@@ -1,0 +1,151 @@
+"""What earlier runs derived, kept by the content of everything that it depends on.
+
+A key is a hash of the compiler's sources and templates, of the interpreter, the platform and every library with its version,
+of the profile, and of a description: its text, and the mechanism that the text evaluates to, whatever it imports. An entry is
+believed only if its own hash is right, which covers its key and all of its bytes; any other is derived anew.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import platform
+import re
+import sys
+import tempfile
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from functools import cache
+from hashlib import sha256
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import sympy as sp
+
+from derive.description.catalogue import MECHANISMS, Entry
+
+ROOT = MECHANISMS.parents[1]
+_KEPT = 400
+"""Entries that stay: those last used."""
+_FORMAT = "softkin cache 1"
+
+
+class Cache:
+    """A folder of entries: plain data (what JSON holds) by key."""
+
+    def __init__(self, folder: Path) -> None:
+        """The folder is made when something is kept."""
+        self.folder = folder
+        self.damaged: list[Path] = []
+        """Entries that were met and not believed."""
+
+    def read(self, key: str) -> Any | None:
+        """What is kept under a key; None where there is nothing, or nothing that can be believed."""
+        path = self._path(key)
+        try:
+            head, _, content = path.read_bytes().partition(b"\n")
+        except OSError:
+            return None
+        if head != _seal(key, content):
+            self.damaged.append(path)
+            return None
+        with contextlib.suppress(OSError):
+            os.utime(path)
+        return json.loads(content)
+
+    def write(self, key: str, data: object) -> None:
+        """Keep plain data under a key: an entry is there whole, or not at all."""
+        content = json.dumps(data).encode()
+        self.folder.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=self.folder)
+        with os.fdopen(handle, "wb") as file:
+            file.write(_seal(key, content) + b"\n" + content)
+        Path(name).replace(self._path(key))
+
+    def tidy(self) -> None:
+        """Remove the entries that were not used for longest."""
+        entries = sorted(self.folder.iterdir(), key=lambda path: path.stat().st_mtime) if self.folder.exists() else []
+        for path in entries[:-_KEPT]:
+            path.unlink(missing_ok=True)
+
+    def _path(self, key: str) -> Path:
+        return self.folder / key
+
+
+def key_of(*parts: str) -> str:
+    """The key of parts in their order."""
+    return sha256("".join(f"{len(part)}:{part}" for part in parts).encode()).hexdigest()
+
+
+def entry_key(foundation: str, entry: Entry) -> str | None:
+    """The key of one mechanism; None where its description holds what has no text."""
+    path, mechanism = entry
+    try:
+        return key_of("mechanism", foundation, path.read_text(encoding="utf-8"), canonical(mechanism))
+    except TypeError:
+        return None
+
+
+def foundation(profile: str | None, root: Path = ROOT) -> str:
+    """The hash of everything that all mechanisms depend on: sources, templates, libraries, interpreter, platform, profile."""
+    found = sha256(key_of(_FORMAT, sys.version, platform.platform(), repr(profile), *_libraries()).encode())
+    for path in sorted(_sources(root)):
+        found.update(key_of(str(path.relative_to(root)), sha256(path.read_bytes()).hexdigest()).encode())
+    return found.hexdigest()
+
+
+def canonical(value: object) -> str:
+    """A text that two values have in common only if they are equal in every part. Raises `TypeError` for what has none."""
+    if isinstance(value, sp.Basic | sp.MatrixBase):
+        return sp.srepr(value)
+    if isinstance(value, Enum) or value is None or isinstance(value, str | bool | int | float):
+        return repr(value)
+    if is_dataclass(value) and not isinstance(value, type):
+        parts = ((f.name, canonical(getattr(value, f.name))) for f in fields(value))
+        return f"{type(value).__qualname__}({', '.join(f'{name}={text}' for name, text in parts)})"
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{canonical(k)}: {canonical(v)}' for k, v in value.items())}}}"
+    if isinstance(value, tuple | list):
+        return f"({', '.join(map(canonical, value))})"
+    raise TypeError(f"{type(value).__name__} has no canonical text")
+
+
+def _sources(root: Path) -> Iterator[Path]:
+    """The compiler without its catalogue: descriptions count one by one."""
+    for path in (root / "derive").rglob("*.py"):
+        if path.parent != root / "derive" / "mechanisms" or path.name.startswith("_"):
+            yield path
+    yield from (path for path in (root / "templates").rglob("*") if path.is_file())
+    yield from root.glob("pyproject.toml")
+
+
+@cache
+def _libraries() -> tuple[str, ...]:
+    """Every library that the compiler is built on, directly or not, with its version."""
+    found: dict[str, str] = {}
+    open_names = list(_required(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]))
+    while open_names:
+        name = open_names.pop()
+        if name not in found:
+            try:
+                found[name] = metadata.version(name)
+            except metadata.PackageNotFoundError:
+                found[name] = "none"  # for another platform
+                continue
+            open_names += _required(metadata.requires(name) or ())
+    return tuple(f"{name} {found[name]}" for name in sorted(found))
+
+
+def _required(requirements: Iterable[str]) -> Iterator[str]:
+    """The names of requirements, without those that only an extra has."""
+    for text in requirements:
+        if not re.search(r";.*\bextra\b", text):
+            yield re.split(r"[^A-Za-z0-9._-]", text, maxsplit=1)[0].lower()
+
+
+def _seal(key: str, content: bytes) -> bytes:
+    return sha256(key.encode() + b"\n" + content).hexdigest().encode()
