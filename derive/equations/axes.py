@@ -18,21 +18,24 @@ from derive.ir.primitives import (
     Select,
 )
 from derive.ir.program import (
-    TURN_NOTE,
     Let,
     Require,
     Statement,
     Status,
 )
+from derive.ir.reason import Why, about_input
 from derive.ir.symbols import (
     real,
 )
+
+_REASONABLE = "numbers of reasonable size"
 
 
 def finite(symbols: Sequence[sp.Symbol]) -> tuple[Require, ...]:
     """Every input that is read must be a number of reasonable size."""
     conditions = [sp.Le(sp.Abs(s), LARGEST) for s in symbols]
-    return (Require(sp.And(*conditions), Status.BAD_INPUT, "numbers of reasonable size"),) if conditions else ()
+    reason = about_input(Why.NOT_GIVEN, _REASONABLE)
+    return (Require(sp.And(*conditions), Status.BAD_INPUT, _REASONABLE, reason),) if conditions else ()
 
 
 def joint_lets(mechanism: Mechanism) -> tuple[Let, ...]:
@@ -81,7 +84,7 @@ def axis_lets(joint: Joint) -> tuple[Let, ...]:
     near = real(f"near_{joint.key}")
     return (
         *_near(joint, near),
-        Let(joint.axis, NearestPeriod(direction, near), f"{joint.name}{TURN_NOTE}"),
+        Let(joint.axis, NearestPeriod(direction, near), turn_of=joint.name),
         motor,
     )
 

@@ -16,6 +16,7 @@ from derive.ir.program import (
     Let,
     Statement,
 )
+from derive.ir.symbols import real
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,8 @@ class Legs:
 class Slope:
     """The derivative of a two-root step by its unknown, over a scale of parameters: its sign is the branch."""
 
-    sigma: sp.Symbol
+    step: sp.Symbol
+    """The unknown that it finds."""
     value: sp.Expr
     """Equals sigma times something not negative at every solution."""
     scale: sp.Expr
@@ -64,6 +66,16 @@ class Slope:
     """(h, e) where the step has solutions for |e| <= h, for steps before it."""
     legs: Legs | None = None
     """Where the root, near zero, multiplies what rounding leaves of its radicand, for steps behind it."""
+
+    @property
+    def sigma(self) -> sp.Symbol:
+        """Which of the two roots is meant: +1 or -1."""
+        return sign_of(self.step)
+
+
+def sign_of(step: sp.Symbol) -> sp.Symbol:
+    """The name of the sign that chooses between the two roots of a step, by the unknown that it finds."""
+    return real(f"sigma_{step.name}")
 
 
 @dataclass(frozen=True)
@@ -95,6 +107,8 @@ class Binding:
     residual: sp.Expr | None = None
     """What vanishes if the equations it was solved from agree with each other, a square of a length."""
     cosine_alone: bool = False
+    yields_to_a_sum: bool = False
+    """Whether a sum of angles may be the better unknown."""
 
     @property
     def rank(self) -> tuple[bool, bool, bool, int]:

@@ -6,7 +6,8 @@ and of length one, y = z × x. Asked once a call, before everything else; all ot
 
 from __future__ import annotations
 
-from functools import cache
+from collections.abc import Sequence
+from functools import cache, reduce
 
 import sympy as sp
 
@@ -28,13 +29,13 @@ from derive.ir.program import (
     Statement,
     Status,
 )
+from derive.ir.reason import Why, about_input
 from derive.ir.symbols import (
     ROTATION_ENTRIES,
     real,
 )
 
-_UNEVEN = "columns not of length one; was the frame converted from REAL?"
-_ASKEW = "columns not at right angles; was the frame converted from REAL?"
+_RIGHT_HANDED = "a right-handed frame"
 _GIVEN = sp.Matrix(3, 3, ROTATION_ENTRIES)
 _COLUMNS = "xyz"
 _PAIRS = ((0, 1), (0, 2), (1, 2))
@@ -56,18 +57,25 @@ def rotation_program() -> Program:
     body: tuple[Statement, ...] = (
         *finite(ROTATION_ENTRIES),
         *sizes,
-        _small(sizes, _UNEVEN),
+        _small(sizes, Why.COLUMNS_UNEVEN),
         *angles,
-        _small(angles, _ASKEW),
-        Require(sp.Gt(determinant, 0), Status.BAD_INPUT, "a right-handed frame"),
+        _small(angles, Why.COLUMNS_ASKEW),
+        Require(sp.Gt(determinant, 0), Status.BAD_INPUT, _RIGHT_HANDED, about_input(Why.NOT_GIVEN, _RIGHT_HANDED)),
         *lets,
         *chosen,
     )
     return assemble("rotation", body, [Output(r.name, let.name) for r, let in zip(ROTATION_ENTRIES, chosen, strict=True)])
 
 
-def _small(errors: list[Let], reason: str) -> Require:
-    return Require(sp.And(*[sp.Le(let.name, ROTATION) for let in errors]), Status.BAD_INPUT, reason)
+def _small(errors: list[Let], why: Why) -> Require:
+    """The largest error is told."""
+    conditions = [sp.Le(let.name, ROTATION) for let in errors]
+    return Require(sp.And(*conditions), Status.BAD_INPUT, reason=about_input(why, amount=_largest([let.name for let in errors])))
+
+
+def _largest(values: Sequence[sp.Expr]) -> sp.Expr:
+    first, *others = values
+    return reduce(lambda most, value: Select(sp.Gt(value, most), value, most), others, first)
 
 
 def _repaired() -> tuple[list[Let], sp.Matrix]:

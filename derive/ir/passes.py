@@ -1,15 +1,16 @@
 """Passes over programs: fold aliases, order by need, hoist what depends on parameters alone.
 
 fold    Let(cos_s, cos_heading); … cos_s …                   →  … cos_heading …
-order   a Let stands just before its first use; one that nothing needs disappears, and so does what a call need not bind
+order   a Let stands just before its first use; one that nothing needs disappears, and so does what a call need not bind;
+        what only the amount of a reason reads is written out in it
 hoist   Let(scale_a2, 2*link_length_1*link_length_2)         →  computed once, by `setup`
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import sympy as sp
 
@@ -33,7 +34,9 @@ from derive.ir.program import (
     binds,
     reads,
     rewritten,
+    told,
 )
+from derive.ir.reason import Unit
 from derive.ir.symbols import (
     real,
     symbols_of,
@@ -43,10 +46,9 @@ from derive.ir.verify import BrokenProgram, verify
 
 def assemble(name: str, statements: Iterable[Statement], outputs: Sequence[Output]) -> Program:
     """A verified program from statements in any sensible order: bare names, folded, ordered, inputs found."""
-    body, values = bare(statements), tuple(Output(o.name, _bare_expression(o.value)) for o in outputs)
+    body, values = bare(statements), tuple(Output(o.name, bare_expression(o.value)) for o in outputs)
     body, values = _fold(body, values)
-    ordered = _order(body, values)
-    program = Program(name, (), ordered, values)
+    program = Program(name, (), written_out(_order(body, values), body), values)
     return with_inputs(program)
 
 
@@ -57,7 +59,7 @@ def with_inputs(program: Program) -> Program:
 
 
 @cache
-def _bare_expression(value: sp.Basic) -> sp.Expr:
+def bare_expression(value: sp.Basic) -> sp.Expr:
     """Symbols without assumptions of their own: in a program a name is a name. Pi is 180 degrees, a square root a root."""
     named = value.xreplace({s: real(s.name) for s in value.free_symbols if s != DEGREE})
     rooted = named.replace(_is_square_root, lambda power: Root(power.base) ** sp.sign(power.exp))
@@ -70,7 +72,7 @@ def _is_square_root(node: sp.Basic) -> bool:
 
 def bare(statements: Iterable[Statement]) -> tuple[Statement, ...]:
     """The statements with plain names: in a program a name is a name, whatever the solver knew of its sign."""
-    return tuple(renamed(rewritten(s, _bare_expression), lambda name: real(name.name)) for s in statements)
+    return tuple(renamed(rewritten(s, bare_expression), lambda name: real(name.name)) for s in statements)
 
 
 def renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> Statement:
@@ -157,9 +159,46 @@ def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Stat
     return tuple(done)
 
 
+def written_out(body: Sequence[Statement], known: Iterable[Statement]) -> tuple[Statement, ...]:
+    """The statements, with every name that a reason reads and that is not bound before it replaced by what it stands for."""
+    values = {s.name: s.value for s in known if isinstance(s, Let)}
+    found: list[Statement] = []
+    bound: set[sp.Symbol] = set()
+    for s in body:
+        found.append(told_in(s, bound, values))
+        bound |= set(binds(s))
+    return tuple(found)
+
+
+def told_in(statement: Statement, bound: Container[sp.Symbol], values: Mapping[sp.Symbol, sp.Expr]) -> Statement:
+    """The statement with its reason in names that are bound; `values` are those of the others."""
+    if not isinstance(statement, Require) or statement.reason is None:
+        return statement
+    return replace(statement, reason=statement.reason.rewritten(partial(_in_full, bound=bound, values=values)))
+
+
+def _in_full(value: sp.Basic, bound: Container[sp.Symbol], values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    for _ in values:  # a value reads no name that needs it: so often at most
+        unbound = {s: values[s] for s in symbols_of(value) if s in values and s not in bound}
+        if not unbound:
+            break
+        value = value.xreplace(unbound)
+    return value
+
+
+def untold(program: Program) -> Program:
+    """The program for callers that are told a status alone: its reasons compute nothing."""
+    body = tuple(
+        replace(s, reason=replace(s.reason, amount=None, unit=Unit.NONE, turns=())) if isinstance(s, Require) and s.reason else s
+        for s in program.body
+    )
+    return with_inputs(replace(program, body=body))
+
+
 def is_read_once(program: Program, name: sp.Symbol) -> bool:
-    """Whether one statement or one output alone reads a name."""
-    return sum(name in reads(s) for s in program.body) + sum(name in symbols_of(o.value) for o in program.outputs) == 1
+    """Whether one statement or one output alone reads a name, and no reason."""
+    readers = sum(name in reads(s) for s in program.body) + sum(name in symbols_of(o.value) for o in program.outputs)
+    return readers == 1 and not any(name in symbols_of(e) for s in program.body for e in told(s))
 
 
 def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
@@ -187,7 +226,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
                 name = names_taken.fresh(s.name.name)
                 known.add(name.name)
                 by_value[value] = name
-                hoisted.append(Let(name, value, s.note))
+                hoisted.append(replace(s, name=name, value=value))
             names[s.name] = by_value[value]
         outputs = tuple(replace(o, value=o.value.xreplace(names)) for o in program.outputs)
         lowered[program.name] = with_inputs(replace(program, body=tuple(body), outputs=outputs))

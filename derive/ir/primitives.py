@@ -49,6 +49,16 @@ class NearestOnArc(sp.Function):
     nargs = 3
 
 
+def angle_of_cosine(cosine: sp.Expr) -> sp.Expr:
+    """The angle in radians, 0 to pi, that has this cosine."""
+    return Atan2(Root(1 - cosine**2), cosine)
+
+
+def angle_of_sine(sine: sp.Expr) -> sp.Expr:
+    """The angle in radians, -pi/2 to pi/2, that has this sine."""
+    return Atan2(sine, Root(1 - sine**2))
+
+
 PRIMITIVES: tuple[type[sp.Function], ...] = (
     sp.sin,
     sp.cos,

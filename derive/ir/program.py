@@ -19,13 +19,11 @@ from math import isqrt
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
+from derive.ir.reason import Reason
 from derive.ir.symbols import (
     PLACE,
     symbols_of,
 )
-
-TURN_NOTE = ": its turn"
-"""How the note ends of a statement that chooses the turn of an axis."""
 
 
 class Status(Enum):
@@ -39,18 +37,6 @@ class Status(Enum):
     INVALID_COUPLING = "SMC_TRAFO_INVALID_COUPLING"
 
 
-
-
-
-
-
-
-
-
-
-
-
-
 @dataclass(frozen=True)
 class Let:
     """Bind `name` to `value`. `note` names the step of the derivation, for the reader."""
@@ -58,6 +44,14 @@ class Let:
     name: sp.Symbol
     value: sp.Expr
     note: str = ""
+    turn_of: str = ""
+    """The axis whose turn the value chooses; empty where it chooses none."""
+
+    @property
+    def comment(self) -> str:
+        """What the reader is told."""
+        turn = f"{self.turn_of}: its turn" if self.turn_of else ""
+        return "; ".join(text for text in (self.note, turn) if text)
 
 
 @dataclass(frozen=True)
@@ -67,6 +61,13 @@ class Require:
     condition: Boolean
     otherwise: Status
     note: str = ""
+    reason: Reason | None = None
+    """What a caller is told; None where nobody is."""
+
+    @property
+    def comment(self) -> str:
+        """What the reader is told: the note, or else the reason."""
+        return self.note or (self.reason.words if self.reason is not None else "")
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,8 @@ class Iterate:
     limit: int
     otherwise: Status
     note: str = ""
+    reason: Reason | None = None
+    """What a caller is told where it never is done; it has no amount."""
 
 
 @dataclass(frozen=True)
@@ -201,19 +204,13 @@ class Program:
         return tuple(name for s in self.body for name in binds(s))
 
     def reads(self) -> frozenset[sp.Symbol]:
-        """Every free symbol that a statement or an output reads."""
+        """Every free symbol that a statement, its reason or an output reads."""
         used: set[sp.Symbol] = set()
         for statement in self.body:
-            used |= reads(statement)
+            used |= reads(statement).union(*map(symbols_of, told(statement)))
         for output in self.outputs:
             used |= symbols_of(output.value)
         return frozenset(used) - set(self.bound())
-
-
-
-
-
-
 
 
 def binds(statement: Statement) -> tuple[sp.Symbol, ...]:
@@ -228,7 +225,7 @@ def binds(statement: Statement) -> tuple[sp.Symbol, ...]:
 
 
 def expressions(statement: Statement) -> Iterator[sp.Basic]:
-    """The expressions of a statement, in the order of their evaluation."""
+    """The expressions of a statement, in the order of their evaluation, without what it tells where it refuses."""
     if isinstance(statement, Let):
         yield statement.value
     elif isinstance(statement, Require):
@@ -246,8 +243,14 @@ def expressions(statement: Statement) -> Iterator[sp.Basic]:
         yield from (statement.done, *statement.following)
 
 
+def told(statement: Statement) -> Iterator[sp.Expr]:
+    """The expressions that are computed where a statement refuses, and nowhere else."""
+    if isinstance(statement, Require) and statement.reason is not None:
+        yield from statement.reason.expressions
+
+
 def reads(statement: Statement) -> set[sp.Symbol]:
-    """The symbols a statement reads and does not bind itself."""
+    """The symbols a statement reads and does not bind itself, without those of what it tells where it refuses."""
     found = {s for e in expressions(statement) for s in symbols_of(e)}
     if isinstance(statement, Call):
         return found | set(statement.constants)
@@ -267,11 +270,12 @@ def shared(programs: Iterable[Program]) -> tuple[Program, ...]:
 
 
 def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> Statement:
-    """The statement with every expression changed; the names it binds stay."""
+    """The statement with every expression changed, that of its reason too; the names it binds stay."""
     if isinstance(statement, Let):
         return replace(statement, value=change(statement.value))
     if isinstance(statement, Require):
-        return replace(statement, condition=change(statement.condition))
+        reason = None if statement.reason is None else statement.reason.rewritten(change)
+        return replace(statement, condition=change(statement.condition), reason=reason)
     if isinstance(statement, Solve):
         return replace(statement, matrix=tuple(map(change, statement.matrix)), right=tuple(map(change, statement.right)))
     if isinstance(statement, Call):

@@ -20,6 +20,7 @@ from derive.ir.program import (
     Statement,
     binds,
     expressions,
+    told,
 )
 from derive.ir.symbols import (
     symbols_of,
@@ -58,7 +59,7 @@ def _check_statement(program: Program, statement: Statement, bound: set[str]) ->
             raise BrokenProgram(f"{program.name}: the matrix, the right-hand sides and the names do not fit together")
     if isinstance(statement, Call):
         _check_call(program, statement)
-    for value in expressions(statement):
+    for value in (*expressions(statement), *told(statement)):
         _check_expression(program, value, bound)
     bound |= {name.name for name in binds(statement)}
 

@@ -8,16 +8,18 @@ import numpy as np
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial
-from derive.description.mechanism import DescriptionError, Mechanism
+from derive.description.mechanism import Bound, DescriptionError, Mechanism
 from derive.equations.closure import all_angles, signs_of, with_fixed_names
 from derive.equations.pose_at_axes import (
     Forward,
 )
 from derive.equations.trigonometry import named_trigonometry
+from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
 from derive.ir.passes import assemble
 from derive.ir.primitives import (
     Select,
+    angle_of_sine,
 )
 from derive.ir.program import (
     Let,
@@ -26,6 +28,7 @@ from derive.ir.program import (
     Statement,
     Status,
 )
+from derive.ir.reason import Reason, Unit, Why, about
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
     MIN_TYPE2_MARGIN,
@@ -93,11 +96,12 @@ def assembly_checks(
     )
     margin = done.margin.xreplace(seen)
     name = real(f"type2_{mechanism.assembly.margin}")
-    note = f"{mechanism.assembly.margin}: the other assembly mode, or too near to losing the plate"
+    least = real(MIN_TYPE2_MARGIN)
+    reason = about(mechanism.assembly.margin, Why.NEAR_TYPE_2, least - name)
     return (
         *own,
         Let(name, margin * ASSEMBLY_SIGN),
-        Require(sp.Ge(name, real(MIN_TYPE2_MARGIN)), Status.UNREACHABLE, note),
+        Require(sp.Ge(name, least), Status.UNREACHABLE, reason=reason),
     )
 
 
@@ -110,5 +114,14 @@ def bound_checks(mechanism: Mechanism, offset: bool) -> tuple[Statement, ...]:
             polynomial(with_fixed_names(mechanism, v), all_angles(mechanism), signs_of(mechanism)).xreplace(seen)
             for v in (b.value, b.largest)
         )
-        checks.append(Require(sp.Le(sp.Abs(value), largest), Status.UNREACHABLE, b.meaning))
+        reason = _beyond(b, sp.Abs(value), largest)
+        checks.append(Require(sp.Le(sp.Abs(value), largest), Status.UNREACHABLE, b.meaning, reason))
     return tuple(checks)
+
+
+def _beyond(bound: Bound, size: sp.Expr, largest: sp.Expr) -> Reason:
+    """What a bound tells: of the sine of an angle, how much the angle is too large."""
+    if isinstance(bound.largest, sp.sin):
+        beyond = (angle_of_sine(size) - angle_of_sine(largest)) / DEGREE
+        return about(bound.meaning, Why.BEYOND_LARGEST_ANGLE, beyond, Unit.ANGLE)
+    return about(bound.meaning, Why.TOO_LARGE, size - largest)

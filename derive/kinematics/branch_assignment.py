@@ -77,7 +77,7 @@ def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_ze
         found.append(Assignment(branch, *steps[0]))
     unnamed = [s for s in slopes if s not in [a.slope for a in found]]
     if unnamed:
-        names = ", ".join(str(s.sigma).removeprefix("sigma_") for s in unnamed)
+        names = ", ".join(s.step.name for s in unnamed)
         raise DescriptionError(f"no branch names the two solutions for {names}")
     return tuple(found)
 

@@ -12,30 +12,26 @@ from derive.description.mechanism import (
     Mechanism,
     Turning,
 )
-from derive.equations.axes import finite, joint_lets
+from derive.equations.axes import finite
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closure import flange_rotation, heading_of
+from derive.equations.limits import limits_program
 from derive.equations.pose_at_axes import (
     Forward,
 )
-from derive.equations.trigonometry import named_trigonometry
 from derive.geometry.pose import pose_of
-from derive.ir.constants import (
-    DEGREE,
-)
 from derive.ir.passes import assemble, hoist
 from derive.ir.program import (
     Let,
     Output,
     Program,
-    Require,
     Statement,
-    Status,
     shared,
 )
 from derive.ir.symbols import (
     BASE_AXIS,
     FLANGE_AXIS,
+    OFFSET,
     ROTATION_ENTRIES,
     START_POSITION,
     START_ROTATION,
@@ -111,7 +107,7 @@ def build(mechanism: Mechanism) -> Kinematics:
         forward_program(mechanism, forward_only, margins),
         orientation_program(forward),
         inverse_program("branch", mechanism, inverse, statements, _last(mechanism, closed, statements, offset=False)),
-        _limits_program(mechanism),
+        limits_program(mechanism),
         singularity,
         jacobian,
         _image_program(mechanism),
@@ -141,7 +137,7 @@ def _platform(mechanism: Mechanism) -> Kinematics:
         replace(forward_program(mechanism, from_start, ()), name="forward_from"),
         orientation_program(forward),
         inverse_program("branch", mechanism, inverse, statements, checks),
-        _limits_program(mechanism),
+        limits_program(mechanism),
         platform_singularity(forward.statements),
         jacobian_program(mechanism, forward),
         _image_program(mechanism),
@@ -162,7 +158,7 @@ def _searching(mechanism: Mechanism) -> Kinematics:
         inverse_program("branch", mechanism, both.closed, branch_statements(both)),
         search_given(both),
         from_joints(mechanism),
-        _limits_program(mechanism),
+        limits_program(mechanism),
         assemble("singularity", (*both.forward.statements, *determinant, margin), [Output(DETERMINANT.name, margin.name)]),
         jacobian_program(mechanism, both.forward),
         _image_program(mechanism),
@@ -262,26 +258,8 @@ def _offset_configuration(
     outputs = [Output(m.name.name, m.name) for m in margins]
     known = derivation_at_axes(mechanism, inverse, at_point(forward))
     draft = assemble("offset_configuration", (*known, *margins), outputs)
-    points = [s for s in draft.inputs if s.name.startswith("point_")]
+    points = [s for s in draft.inputs if s in OFFSET]
     return assemble("offset_configuration", (*finite(points), *draft.body), draft.outputs)
-
-
-def _limits_program(mechanism: Mechanism) -> Program:
-    """Every axis, those with several turns first, then every quantity with limits of its own, inside its widened limits."""
-    turning_first = sorted(mechanism.joints, key=lambda j: not j.multi_turn)  # what a turn carries along follows it
-    body: list[Statement] = [_inside(j.key, j.axis, f"limits of {j.name}") for j in turning_first]
-    if mechanism.limited:
-        body += joint_lets(mechanism)
-    for quantity in mechanism.limited:
-        lets, (value,) = named_trigonometry(mechanism, [quantity.value / (DEGREE if quantity.is_angle else 1)])
-        name = real(f"value_{quantity.name}")
-        body += [*lets, Let(name, value, quantity.meaning), _inside(quantity.name, name, f"limits of {quantity.meaning}")]
-    return assemble("limits", body, [])
-
-
-def _inside(key: str, value: sp.Symbol, note: str) -> Require:
-    condition = sp.And(sp.Ge(value, real(f"lowest_{key}")), sp.Le(value, real(f"highest_{key}")))
-    return Require(condition, Status.UNREACHABLE, note)
 
 
 def _projection_program(mechanism: Mechanism) -> Program:

@@ -36,6 +36,7 @@ from derive.ir.program import (
     Statement,
     Status,
 )
+from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import (
     BASE_AXIS,
     COORDINATE_NAMES,
@@ -45,6 +46,7 @@ from derive.ir.symbols import (
 )
 
 _ALONG = real("flange_along")
+_UNNOTICED = real("unnoticed_shift")
 _ACROSS = "off the axis that the flange turns about"
 _BETWEEN = "between the axes: only a flange that keeps its orientation tells where that is"
 _UNMET = "turns in a way that nothing commands"
@@ -96,15 +98,19 @@ def _compatible(mechanism: Mechanism) -> Program:
     across = [s - a * _ALONG for s, a in zip(parts.flange, FLANGE_AXIS, strict=True)]
     unmet = [s for k, s in enumerate(parts.tool) if k not in _MET[mechanism.task.turning]]
     lengths = [p.symbol for p in mechanism.parameters if p.unit == "u"]
-    unnoticed = real("unnoticed_shift")
-    body: list[Statement] = [Let(unnoticed, HELD * sp.Add(*map(sp.Abs, lengths)), "as much may turn with the flange")]
+    body: list[Statement] = [Let(_UNNOTICED, HELD * sp.Add(*map(sp.Abs, lengths)), "as much may turn with the flange")]
     if any(parts.flange):
         body += [*finite(FLANGE_AXIS), *_along(parts), Let(real("flange_offset"), _size(across), _ACROSS)]
-        body.append(Require(sp.Le(real("flange_offset"), unnoticed), Status.INVALID_COUPLING))
+        body.append(_unnoticed("flange_offset"))
     for name, value, note in (("wrist_offset", parts.wrist, _BETWEEN), ("unmet_offset", _size(unmet), _UNMET)):
         if value != 0:
-            body += [Let(real(name), value, note), Require(sp.Le(real(name), unnoticed), Status.INVALID_COUPLING)]
+            body += [Let(real(name), value, note), _unnoticed(name)]
     return assemble("compatible", body, [])
+
+
+def _unnoticed(name: str) -> Require:
+    """The shift of that name is too small to be noticed."""
+    return Require(sp.Le(real(name), _UNNOTICED), Status.INVALID_COUPLING, reason=about_machine(Why.TURNS_WITH_THE_FLANGE))
 
 
 def _carried(mechanism: Mechanism) -> Program:

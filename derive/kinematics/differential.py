@@ -40,6 +40,7 @@ from derive.ir.program import (
     Statement,
     Status,
 )
+from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import (
     COORDINATE_NAMES,
     ROTATION_ENTRIES,
@@ -159,7 +160,7 @@ def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]
         *lets,
         *more,
         Let(determinant, entries.det(), "of the closure by the position: zero in a type 2 singularity"),
-        Require(determined, Status.IMPOSSIBLE, "nothing controls the plate"),
+        Require(determined, Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED)),
         Let(divisor, Select(determined, determinant, sp.Integer(1))),
     )
     return -entries.adjugate() * drives / divisor, statements

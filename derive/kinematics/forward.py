@@ -44,6 +44,7 @@ from derive.ir.program import (
     Status,
     rewritten,
 )
+from derive.ir.reason import Why, about, about_machine
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
     COORDINATE_NAMES,
@@ -118,7 +119,7 @@ def _positive(mechanism: Mechanism) -> tuple[Statement, ...]:
         scale = SCALE if value.free_symbols & lengths else sp.Integer(1)
         lets, (named,) = named_trigonometry(mechanism, [value])
         condition = sp.Ge(named, -BOUNDARY * scale)
-        checks += [*lets, Require(condition, Status.IMPOSSIBLE, "the mirror that the machine does not have")]
+        checks += [*lets, Require(condition, Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_MIRROR))]
     return (*checks, *_domains(mechanism))
 
 
@@ -131,7 +132,7 @@ def _domains(mechanism: Mechanism) -> tuple[Require, ...]:
         low, high = (sp.Integer(int(v)) for v in joint.domain)
         value = joint.axis - joint.offset
         inside = sp.And(sp.Ge(value, low - LIMIT * (1 + abs(low))), sp.Le(value, high + LIMIT * (1 + abs(high))))
-        checks.append(Require(inside, Status.IMPOSSIBLE, f"{joint.name} where the machine has no pose"))
+        checks.append(Require(inside, Status.IMPOSSIBLE, reason=about(joint.name, Why.NO_POSE)))
     return tuple(checks)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -45,6 +45,7 @@ from derive.ir.program import (
     Statement,
     Status,
 )
+from derive.ir.reason import Unit, Why, about, about_machine
 from derive.ir.symbols import (
     HEADING,
     OFFSET,
@@ -145,7 +146,7 @@ def heading_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
         Let(along, cos_value, "projection: the tool direction swings to the machine's, the twist is kept"),
         Let(across, sin_value),
         Let(length, Root(along**2 + across**2)),
-        Require(determined, Status.UNREACHABLE, "the tool points exactly the opposite way"),
+        Require(determined, Status.UNREACHABLE, reason=about_machine(Why.OPPOSITE)),
         Let(divisor, Select(determined, length, sp.Integer(1))),
         Let(real("cos_heading"), along / divisor),
         Let(real("sin_heading"), across / divisor),
@@ -163,7 +164,8 @@ def inverse_program(
     in_plane: tuple[Statement, ...] = ()
     if inverse.closure.plane is not None:
         distance = sp.Abs(real("z") - inverse.closure.plane)
-        in_plane = (Require(sp.Le(distance, PLANE * SCALE), Status.UNREACHABLE, "z: a planar machine has none"),)
+        reason = about("z", Why.OUT_OF_PLANE, distance - PLANE * SCALE, Unit.LENGTH)
+        in_plane = (Require(sp.Le(distance, PLANE * SCALE), Status.UNREACHABLE, reason=reason),)
     resolved = {s.name for s in statements if isinstance(s, Let)}
     axes = tuple(
         of_angle(let, j, resolved)
@@ -185,4 +187,4 @@ def of_angle(let: Let, joint: Joint, resolved: set[sp.Symbol]) -> Let:
     if joint.symbol not in resolved or joint.axis in resolved:
         return let
     direction = Atan2(sine(joint.symbol), cosine(joint.symbol))
-    return Let(let.name, let.value.xreplace({direction: joint.symbol}), let.note)
+    return replace(let, value=let.value.xreplace({direction: joint.symbol}))

@@ -30,6 +30,7 @@ from derive.ir.program import (
     Status,
     rewritten,
 )
+from derive.ir.reason import Why, about_input, about_parameters
 from derive.ir.symbols import (
     MIN_TYPE2_MARGIN,
     SCALE,
@@ -105,8 +106,9 @@ def setup_program(
     body: list[Statement] = [condition for p in parameters for condition in _range_of(p)]
     for constraint in mechanism.constraints:
         body += constraint.steps
-        body.append(Require(_inequality(constraint.condition), Status.NOT_INITIALIZED, constraint.message))
-    outputs = [Output(p.name, real(p.name)) for p in parameters if not p.name.startswith(("lower_", "upper_"))]
+        body.append(_needed(_inequality(constraint.condition), constraint.message))
+    ends = {o.name for key in limited_keys(mechanism) for o in _limit_outputs(key)}
+    outputs = [Output(p.name, real(p.name)) for p in parameters if p.name not in ends]
     for joint in mechanism.joints:
         body += [_ordered(joint.key), *_limits(joint.key, _fallback(joint))]
         outputs += _limit_outputs(joint.key)
@@ -131,6 +133,11 @@ def setup_program(
     return verify(Program("setup", inputs, bare(body), tuple(outputs)))
 
 
+def limited_keys(mechanism: Mechanism) -> tuple[str, ...]:
+    """What has limits, by the last part of the names of its limits."""
+    return (*(joint.key for joint in mechanism.joints), *(quantity.name for quantity in mechanism.limited))
+
+
 def chooses_by_lengths(mechanism: Mechanism) -> bool:
     """Whether linear axes alone tell which branch is nearest to the reference."""
     return bool(mechanism.branches) and not any(j.is_angle for j in mechanism.joints)
@@ -153,16 +160,21 @@ def _range_of(parameter: Parameter) -> tuple[Require, ...]:
         return ()
     if parameter.role is Role.SIGN:
         condition = sp.And(sp.Ge(sp.Abs(symbol), 1), sp.Le(sp.Abs(symbol), 1))
-        return (Require(condition, Status.NOT_INITIALIZED, note),)
+        return (_needed(condition, note),)
     bare = real(parameter.name)  # without assumptions: SymPy must not decide `length > 0` by itself
     low = sp.Float(parameter.low) if parameter.low % 1 else sp.Integer(int(parameter.low))
     high = sp.Float(parameter.high) if parameter.high % 1 else sp.Integer(int(parameter.high))
     if parameter.role is Role.SIGNED_LENGTH:
         apart = sp.Or(sp.Gt(bare, 0), sp.Lt(bare, 0))  # a comparison takes what is no number, a size does not
         inside = sp.And(apart, sp.Ge(bare, low), sp.Le(bare, min(high, LARGEST)))
-        return (Require(inside, Status.NOT_INITIALIZED, note),)
+        return (_needed(inside, note),)
     above = sp.Gt(bare, low) if parameter.low_open else sp.Ge(bare, low)
-    return (Require(sp.And(above, sp.Le(bare, min(high, LARGEST))), Status.NOT_INITIALIZED, note),)
+    return (_needed(sp.And(above, sp.Le(bare, min(high, LARGEST))), note),)
+
+
+def _needed(condition: sp.Basic, what: str) -> Require:
+    """A condition on parameters, in words."""
+    return Require(condition, Status.NOT_INITIALIZED, reason=about_parameters(what))
 
 
 def _inequality(condition: sp.Basic) -> sp.Basic:
@@ -173,7 +185,7 @@ def _inequality(condition: sp.Basic) -> sp.Basic:
 def _ordered(key: str) -> Require:
     lower, upper = real(f"lower_{key}"), real(f"upper_{key}")
     condition = sp.Or(sp.Lt(lower, upper), sp.Le(sp.Abs(lower) + sp.Abs(upper), 0))
-    return Require(condition, Status.NOT_INITIALIZED, f"lower_{key} below upper_{key}, or both 0")
+    return _needed(condition, f"lower_{key} below upper_{key}, or both 0")
 
 
 Fallback = tuple[tuple[sp.Basic, sp.Expr, sp.Expr], ...]
@@ -273,14 +285,17 @@ def limits_of_axis() -> Program:
     drive_limited, drive_lower, drive_upper = (real(f"drive_{word}") for word in ("limited", "lower", "upper"))
     own_low, own_high = real("own_low"), real("own_high")
     has_drive = sp.Gt(drive_limited, 0)
-    note = "the lower limit of the drive is above the upper one, or one of them is no number"
     body: tuple[Statement, ...] = (
-        Require(sp.Or(sp.Le(drive_limited, 0), sp.Le(drive_lower, drive_upper)), Status.BAD_INPUT, note),
+        Require(
+            sp.Or(sp.Le(drive_limited, 0), sp.Le(drive_lower, drive_upper)),
+            Status.BAD_INPUT,
+            reason=about_input(Why.DRIVE_LIMITS_CROSSED),
+        ),
         Let(own_low, Select(sp.Gt(own_unlimited, 0), -LARGEST, own_lower), "no axis value is larger in size"),
         Let(own_high, Select(sp.Gt(own_unlimited, 0), LARGEST, own_upper)),
         Let(low, Select(sp.And(has_drive, sp.Gt(drive_lower, own_low)), drive_lower, own_low), "the narrower of both"),
         Let(high, Select(sp.And(has_drive, sp.Lt(drive_upper, own_high)), drive_upper, own_high)),
-        Require(sp.Le(low, high), Status.NOT_INITIALIZED, "no axis value is inside both limits"),
+        Require(sp.Le(low, high), Status.NOT_INITIALIZED, reason=about_input(Why.NO_AXIS_VALUE)),
         Let(unlimited, Select(has_drive, sp.Integer(0), own_unlimited)),
         *_widened(axis.key),
         *_turn_window(axis),

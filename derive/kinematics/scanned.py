@@ -47,6 +47,7 @@ from derive.ir.program import (
     binds,
     rewritten,
 )
+from derive.ir.reason import Why, about_joint, about_machine
 from derive.ir.symbols import (
     COORDINATE_NAMES,
     FREED,
@@ -142,17 +143,17 @@ def branch_statements(both: Searching) -> tuple[Statement, ...]:
     program = search_of(both)
     arguments = _arguments(both, program)
     names = (FOUND, *(real(f"found_{j.symbol.name}") for j in mechanism.joints))
-    note = f"{mechanism.search.joint.name}: the search along it finds no root of this branch"
+    no_root = about_joint(mechanism.search.joint.symbol, Why.NO_ROOT)
     return (
         searched_flag(mechanism),
         *closed,
         Require(
             sp.Or(is_searched, sp.Gt(real(f"sigma_{crossing.name}"), 0)),
             Status.UNREACHABLE,
-            "without the offset there is no second crossing",
+            reason=about_machine(Why.NO_SECOND_CROSSING),
         ),
         Call(program, arguments, names, f"{mechanism.search.joint.name}: where it meets what is left of the closure"),
-        Require(sp.Or(sp.Lt(SEARCHED, _HALF), sp.Gt(FOUND, _HALF)), Status.UNREACHABLE, note),
+        Require(sp.Or(sp.Lt(SEARCHED, _HALF), sp.Gt(FOUND, _HALF)), Status.UNREACHABLE, reason=no_root),
         *_chosen(both, is_searched),
     )
 

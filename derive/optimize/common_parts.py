@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations
 
 import sympy as sp
@@ -88,7 +89,7 @@ def _with_names(program: Program, names: Mapping[sp.Expr, sp.Expr]) -> Program:
             value = statement.value
             for part, name in names.items():
                 value = _read(value, part, name)
-            statement = Let(statement.name, value, statement.note)
+            statement = replace(statement, value=value)
         body.append(statement)
     parts = [Let(name, part) for part, name in names.items() if name.is_Symbol and name not in program.bound()]
     return assemble(program.name, [*parts, *body], program.outputs)

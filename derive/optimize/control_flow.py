@@ -279,7 +279,7 @@ class _Choice:
 
     def _arm(self, side: int, results: tuple[sp.Symbol, ...]) -> tuple[Item, ...]:
         lets = [
-            Let(let.name, self.value(place, side), let.note)
+            replace(let, value=self.value(place, side))
             for place, let in enumerate(self.stretch.lets)
             if place in self.members or self.inside.get(place) == side
         ]
@@ -311,7 +311,7 @@ def _simplified(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:
             continue
         if not value.is_Symbol and not value.is_Number:
             known.setdefault(value, let.name)
-        kept.append(Let(let.name, value, let.note))
+        kept.append(replace(let, value=value))
     needed = _ancestors(kept, results)
     return [let for let in kept if let.name in needed]
 

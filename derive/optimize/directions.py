@@ -220,7 +220,7 @@ def _without_division(
     for s in program.body:
         if isinstance(s, Let) and s.name in graded:
             value = _times(s.value, length) if s.name in names else s.value
-            s = Let(called.get(s.name, s.name), value, s.note)
+            s = replace(s, name=called.get(s.name, s.name), value=value)
         body.append(rewritten(s, lambda e: e.xreplace(called)))
     changed = assemble(program.name, body, [Output(o.name, o.value.xreplace(called)) for o in program.outputs])
     return _with_parts(changed, set(called.values()))
@@ -234,7 +234,7 @@ def _with_parts(program: Program, names: set[sp.Symbol]) -> Program:
         if isinstance(s, Let) and s.name in names and isinstance(s.value, Select) and s.value.args[1] in sources:
             source, (condition, _, otherwise) = sources[s.value.args[1]], s.value.args
             if is_read_once(program, source.name):
-                s = Let(s.name, Select(condition, source.value, otherwise), _joined(source.note, s.note))
+                s = replace(s, value=Select(condition, source.value, otherwise), note=_joined(source.note, s.note))
         body.append(s)
     return assemble(program.name, body, program.outputs)
 

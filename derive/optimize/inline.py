@@ -65,7 +65,7 @@ def _shortened(items: Sequence[Item], once: set[sp.Symbol], values: dict[sp.Basi
             kept.append(replace(item, condition=condition, holds=holds, fails=fails))
             continue
         changed = rewritten(item, lambda e: e.xreplace(values))
-        if isinstance(changed, Let) and changed.name in once and not changed.note and _is_short(changed.value):
+        if isinstance(changed, Let) and changed.name in once and not changed.comment and _is_short(changed.value):
             values[changed.name] = Grouped(changed.value)
         else:
             kept.append(changed)

@@ -12,6 +12,7 @@ chosen afterwards.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import sympy as sp
 
@@ -48,7 +49,7 @@ def without_minus(program: Program) -> Program:
             opposites |= {s: taken.fresh(f"minus_{s.name}") for s in pair}
             changed[Atan2(*pair) / DEGREE] = Atan2(*(opposites[s] for s in pair)) / DEGREE + 180
     body = [
-        Let(opposites[s.name], -s.value, s.note)
+        replace(s, name=opposites[s.name], value=-s.value)
         if isinstance(s, Let) and s.name in opposites
         else rewritten(s, lambda e: e.xreplace(changed))
         for s in program.body
@@ -77,7 +78,7 @@ def with_fewer_signs(program: Program) -> Program:
         name = taken.fresh(_opposite_name(let.name.name))
         opposites.add(name)
         turns_are_free |= {name} if let.name in turns_are_free else set()
-        body[place - 1] = Let(name, opposite, let.note)
+        body[place - 1] = replace(let, name=name, value=opposite)
         body = [_with(s, {let.name: -name}) for s in body]
         outputs = [Output(o.name, o.value.xreplace({let.name: -name})) for o in outputs]
         place = 0

@@ -10,7 +10,7 @@ turns is as well known without it, and shorter.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -44,7 +44,7 @@ def shorter_columns(program: Program) -> Program:
         if isinstance(statement, Let):
             found = _third(statement.value, values, rotations)
             if found is not None:
-                body[place] = Let(statement.name, found, statement.note)
+                body[place] = replace(statement, value=found)
     return assemble(program.name, body, program.outputs)
 
 

@@ -27,7 +27,6 @@ from derive.ir.primitives import (
     Select,
 )
 from derive.ir.program import (
-    TURN_NOTE,
     Call,
     FindRoot,
     Iterate,
@@ -121,8 +120,7 @@ def any_turn(program: Program, counted: Collection[sp.Symbol] = ()) -> Program:
 
     def plain(statement: Statement) -> Statement:
         if isinstance(statement, Let) and isinstance(statement.value, NearestPeriod) and statement.name not in counted:
-            notes = [note for note in statement.note.split("; ") if not note.endswith(TURN_NOTE)]
-            return replace(statement, value=statement.value.args[0], note="; ".join(notes))
+            return replace(statement, value=statement.value.args[0], turn_of="")
         return statement
 
     kept = [plain(s) for s in program.body if not (isinstance(s, Require) and s.otherwise is Status.BAD_INPUT)]
@@ -193,7 +191,7 @@ class _Unroller:
         return {choice: refusal.at(choice) for choice in choices(len(self.signs))}
 
     def _refused(self, before: _Refusal, support: tuple[int, ...], conditions: Sequence[Require]) -> _Refusal:
-        status, notes = conditions[0].otherwise, dict.fromkeys(c.note for c in conditions if c.note)
+        status, notes = conditions[0].otherwise, dict.fromkeys(c.comment for c in conditions if c.comment)
         joint = tuple(sorted({*before.support, *support}))
         values: dict[Choice, sp.Expr] = {}
         for choice in choices(len(joint)):
@@ -219,7 +217,7 @@ class _Unroller:
         name = self._fresh(let.name.name, support, choice)
         self._known[key] = name
         self._values_of[name] = value
-        self.body.append(Let(name, value, let.note))
+        self.body.append(replace(let, name=name, value=value))
         return name
 
     def _written_out(self, value: sp.Expr) -> sp.Expr:

@@ -16,9 +16,11 @@ from derive.description.mechanism import (
 )
 from derive.ir.constants import (
     BOUNDARY,
+    DEGREE,
 )
 from derive.ir.primitives import (
     Select,
+    angle_of_cosine,
 )
 from derive.ir.program import (
     Let,
@@ -27,6 +29,7 @@ from derive.ir.program import (
     Statement,
     Status,
 )
+from derive.ir.reason import Unit, Why, about_leg
 from derive.ir.symbols import (
     ROTATION_ENTRIES,
     real,
@@ -35,6 +38,7 @@ from derive.plate.legs import names, of, turned
 
 _HOME, _SEEN, _TURNED = "home_along", "plate_axis", "cone_axis"
 """The rod's direction at home, the same as the plate sees it, and where the plate has taken that."""
+_BEYOND = {"base": Why.BEYOND_BASE_CONE, "plate": Why.BEYOND_PLATE_CONE}
 
 
 def cone_axes(mechanism: Mechanism, home_rotation: Sequence[sp.Expr]) -> tuple[Let, ...]:
@@ -70,5 +74,6 @@ def _inside(side: str, cones: Sequence[tuple[Rod, sp.Expr]], axis: str) -> Itera
     for rod, cone in cones:
         lean = of(f"cos_{side}_lean", rod)
         yield Let(lean, sp.Add(*[a * b for a, b in zip(names("along", rod), names(axis, rod), strict=True)]))
-        note = f"leg {rod.name}: its joint on the {side} bends beyond its cone"
-        yield Require(sp.Ge(lean, least[cone]), Status.UNREACHABLE, note)
+        beyond = angle_of_cosine(lean) - angle_of_cosine(least[cone])
+        reason = about_leg(rod.name, _BEYOND[side], beyond / DEGREE, Unit.ANGLE)
+        yield Require(sp.Ge(lean, least[cone]), Status.UNREACHABLE, reason=reason)

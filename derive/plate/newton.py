@@ -41,6 +41,7 @@ from derive.ir.program import (
     Statement,
     Status,
 )
+from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
     COORDINATE_NAMES,
@@ -113,7 +114,7 @@ def search_program(mechanism: Mechanism) -> Program:
     checks: tuple[Statement, ...] = (
         *finite([j.axis for j in mechanism.joints]),
         *joint_lets(mechanism),
-        Require(positive, Status.IMPOSSIBLE, "the mirror that the machine does not have"),
+        Require(positive, Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_MIRROR)),
     )
     search = assemble(SEARCH, (*checks, *_newton(mechanism)), outputs)
     return replace(search, summary="The pose of the platform at its axis values, the rows of A there, and their determinant")
@@ -140,6 +141,7 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
         limit=LIMIT,
         otherwise=Status.IMPOSSIBLE,
         note="Newton's method: every pass improves the pose until the rods fit",
+        reason=about_machine(Why.NOT_CONVERGED),
     )
     arms = (let for rod in mechanism.rods for let in turned(START_ROTATION, point_of(rod), names("start_arm", rod)))
     return (
@@ -147,7 +149,7 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
         *bases[0],
         Let(within, CONVERGED * SCALE, "lengths that agree to this are equal"),
         loop,
-        Require(sp.Gt(ASSEMBLY_SIGN * DETERMINANT, 0), Status.IMPOSSIBLE, "the other assembly mode"),
+        Require(sp.Gt(ASSEMBLY_SIGN * DETERMINANT, 0), Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_ASSEMBLY)),
         *noted((Let(n, v) for n, v in zip(ROTATION_ENTRIES, rotation, strict=True)), "the start, and the turn away from it"),
     )
 

@@ -33,6 +33,7 @@ from derive.ir.program import (
     Statement,
     Status,
 )
+from derive.ir.reason import Why, about, about_leg, about_machine, about_parameters
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
     COORDINATE_NAMES,
@@ -59,6 +60,9 @@ from derive.plate.legs import (
     span,
     turned,
 )
+
+_APART = "legs that have a length at the home pose, and joints that are apart"
+_HELD = "a home pose at which the legs hold the platform"
 
 
 def machine_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
@@ -101,11 +105,11 @@ def _at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
         *(let for lets in spans for let in lets),
         *(length(rod) for rod in rods),
         Let(SCALE, sp.Add(*lengths) / len(lengths) + RADIUS, "a length of the machine: the mean leg and the platform"),
-        Require(apart, Status.NOT_INITIALIZED, "legs that have a length at the home pose, and joints that are apart"),
+        Require(apart, Status.NOT_INITIALIZED, reason=about_parameters(_APART)),
         *(let for rod, arm in zip(rods, arms, strict=True) for let in row(rod, arm, of("length", rod))),
         *cone_axes(mechanism, HOME_ROTATION),
         Solve((), rows(mechanism), (), DETERMINANT, "the legs at the home pose: zero where they do not hold the platform"),
-        Require(sp.Gt(sp.Abs(DETERMINANT), SINGULAR), Status.NOT_INITIALIZED, "a home pose at which the legs hold the platform"),
+        Require(sp.Gt(sp.Abs(DETERMINANT), SINGULAR), Status.NOT_INITIALIZED, reason=about_parameters(_HELD)),
         Let(ASSEMBLY_SIGN, Select(sp.Gt(DETERMINANT, 0), sp.Integer(1), sp.Integer(-1)), "assembly mode of this machine"),
     )
 
@@ -124,19 +128,18 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
         arm = names("arm", rod)
         found = (*turned(ROTATION_ENTRIES, point_of(rod), arm), *span(rod, POSITION, arm, rod.base), *row(rod, arm, rod.length))
         lets += [let for let in found if let.name not in bound]
-    margin = sp.Ge(ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN))
+    margin, least = ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN)
     return (
         *lets,
         *(_long_enough(rod) for rod in mechanism.rods),
         *cone_checks(mechanism),
         Solve((), rows(mechanism), (), DETERMINANT, "margin of the platform"),
-        Require(margin, Status.UNREACHABLE, f"{MARGIN}: the other assembly mode, or too near to losing the plate"),
+        Require(sp.Ge(margin, least), Status.UNREACHABLE, reason=about(MARGIN, Why.NEAR_TYPE_2, least - margin)),
     )
 
 
 def _long_enough(rod: Rod) -> Require:
-    note = f"leg {rod.name}: without length it has no direction"
-    return Require(sp.Gt(rod.length, SHORTEST_LINK * SCALE), Status.UNREACHABLE, note)
+    return Require(sp.Gt(rod.length, SHORTEST_LINK * SCALE), Status.UNREACHABLE, reason=about_leg(rod.name, Why.WITHOUT_LENGTH))
 
 
 def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
@@ -146,7 +149,7 @@ def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[St
     width = len(joints)
     words = (*(f"v{c}" for c in COORDINATE_NAMES), *(f"w{c}" for c in COORDINATE_NAMES))
     entries = [real(f"column_{column}_{word}") for word in words for column in range(1, width + 1)]
-    held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, "nothing controls the plate")
+    held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED))
     system = Solve(tuple(entries), rows(mechanism), tuple(driven), None, "how the legs move the platform")
     return (held, system), [e if k // width < 3 else e / RADIUS for k, e in enumerate(entries)]
 

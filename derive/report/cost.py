@@ -33,7 +33,6 @@ from derive.ir.program import (
     Statement,
 )
 from derive.kinematics.kinematics import Kinematics
-from derive.report.reasons import Reasons, reasons_of, reasons_of_rotation
 
 _BINARY_FRACTIONS = (2, 4, 8, 16)
 """The denominators that are written as a decimal factor."""
@@ -94,11 +93,10 @@ _PERIOD_BYTE = Cost(additions=4, divisions=1)
 def costs_of(kinematics: Kinematics) -> Costs:
     """What forward and inverse kinematics of a mechanism cost at worst."""
     periods, axes = len(kinematics.period_joints), len(kinematics.distance_joints)
-    reasons = reasons_of(kinematics)
-    branch, limits = (_with_refusals(p, reasons) for p in (kinematics.branch, kinematics.limits))
+    branch, limits = (_with_refusals(p) for p in (kinematics.branch, kinematics.limits))
     # The distance of a solution from the reference, a sum of squares, and its comparison with the least so far
     tried = branch + Cost(additions=3 * axes, multiplications=axes) if kinematics.branches else branch
-    once = _with_refusals(rotation_program(), reasons_of_rotation()) + limits if kinematics.reads_rotation else limits
+    once = _with_refusals(rotation_program()) + limits if kinematics.reads_rotation else limits
     return Costs(
         forward=cost_of(kinematics.forward) + _PERIOD_BYTE * periods,
         inverse=tried + once,
@@ -107,14 +105,19 @@ def costs_of(kinematics: Kinematics) -> Costs:
     )
 
 
-def _with_refusals(program: Program, reasons: Reasons) -> Cost:
+def _with_refusals(program: Program) -> Cost:
     """The same where a refusal also computes how much is missing: nothing that follows is then computed."""
     worst, before = cost_of(program), Cost()
     for statement in program.body:
         before += _statement(statement)
         if isinstance(statement, Require):
-            worst = _most(worst, *(before + expression_cost(c.missing) for c in reasons.checks([statement])))
+            worst = _most(worst, *(before + expression_cost(e) for e in _amounts(statement)))
     return worst
+
+
+def _amounts(require: Require) -> tuple[sp.Expr, ...]:
+    reason = require.reason
+    return () if reason is None or reason.amount is None else (reason.amount,)
 
 
 def _most(*costs: Cost) -> Cost:

@@ -98,7 +98,7 @@ class Ledger:
             if name != statement.name:
                 names[statement.name] = name
             self._by_value.setdefault(value, name)
-            self._statements.append(Let(name, value, statement.note))
+            self._statements.append(replace(statement, name=name, value=value))
         return names
 
     def _fresh(self, proposal: sp.Symbol) -> sp.Symbol:

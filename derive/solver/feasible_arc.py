@@ -10,7 +10,7 @@ Where e is within its bound, or far beyond it though u is known, u stays, and no
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -110,7 +110,7 @@ def _condition(statements: Sequence[Statement], measure: Measure, slope: Slope) 
     if all(p.along.xreplace(gone) == 0 and p.across.xreplace(gone) == 0 for p in parts):
         return None  # where the angle is free it no longer moves them
     chain = tuple(_chain(statements, moved, dependent))
-    return _Condition(f"{angle.name}_of_{slope.sigma.name.removeprefix('sigma_')}", size, value, parts, chain)
+    return _Condition(f"{angle.name}_of_{slope.step.name}", size, value, parts, chain)
 
 
 def _chain(statements: Sequence[Statement], names: Sequence[sp.Symbol], dependent: Mapping[sp.Symbol, sp.Expr]) -> list[Let]:
@@ -162,7 +162,7 @@ def _moved(statements: Sequence[Statement], measure: Measure, condition: _Condit
         if not (isinstance(s, Let) and s.name in names):
             found.append(s)
             continue
-        found.append(Let(names[s.name], s.value, s.note))
+        found.append(replace(s, name=names[s.name]))
         if s.name == sine(measure.angle):  # the second of the two
             found += [rewritten(m, lambda e: e.xreplace(names)) for m in _motion(measure, condition)]
             found += _bound(measure, condition, names)

@@ -81,16 +81,12 @@ def beyond_folds(
     for slope in slopes:
         if slope.legs is None:
             continue
-        found = [_through_legs(s, _angle(slope), slope.legs) for s in found]
+        found = [_through_legs(s, slope.step, slope.legs) for s in found]
         for step in slopes:
             later = _later(found, slope, step, scale)
             if later is not None:
                 found = _moved(found, later, sweep_of(later.chain, later.value, later.angle, measures))
     return tuple(found)
-
-
-def _angle(slope: Slope) -> sp.Symbol:
-    return real(slope.sigma.name.removeprefix("sigma_"))
 
 
 def _through_legs(statement: Statement, angle: sp.Symbol, legs: Legs) -> Statement:
@@ -113,7 +109,7 @@ def _later(statements: Sequence[Statement], slope: Slope, step: Slope, scale: sp
     """What a later step needs of a two-root step; None where it needs nothing."""
     if slope.legs is None or step.reach is None or step is slope:
         return None
-    angle = _angle(slope)
+    angle = slope.step
     own = {slope.legs.root, cosine(angle), sine(angle)}
     dependent: dict[sp.Symbol, Let] = {}
     for s in statements:
@@ -130,7 +126,7 @@ def _later(statements: Sequence[Statement], slope: Slope, step: Slope, scale: sp
             chain.insert(0, let)
     if slope.legs.beside == 0 and not any(let.value.free_symbols & {cosine(angle), sine(angle)} for let in chain):
         return None  # what is ahead is the whole distance, however the angle turns
-    return _Later(f"{angle.name}_for_{_angle(step).name}", angle, slope.legs, size, value, tuple(chain), scale)
+    return _Later(f"{angle.name}_for_{step.step.name}", angle, slope.legs, size, value, tuple(chain), scale)
 
 
 def _moved(statements: Sequence[Statement], later: _Later, sweep: Sweep | None) -> list[Statement]:
@@ -140,7 +136,7 @@ def _moved(statements: Sequence[Statement], later: _Later, sweep: Sweep | None) 
         if not (isinstance(s, Let) and s.name in later.bound):
             found.append(s)
             continue
-        found.append(Let(later.before(s.name), s.value.xreplace({n: later.before(n) for n in later.bound}), s.note))
+        found.append(replace(s, name=later.before(s.name), value=s.value.xreplace({n: later.before(n) for n in later.bound})))
         if s.name == sine(later.angle):  # the last of the three
             found += _motion(later, sweep)
     return found

@@ -99,7 +99,7 @@ def _next(
         if binding is not None:
             return problem, binding, sums
     found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
-    if found is not None and found.rule != "trigonometric":
+    if found is not None and not found.yields_to_a_sum:
         return problem, found, sums
     for total in candidate_sums(problem, arguments):
         trial = substitute(problem, total)

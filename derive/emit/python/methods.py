@@ -48,7 +48,7 @@ def methods(kin: Kinematics) -> list[Method]:
     if kin.offset_branch is not None:
         text = "The axes of one branch for a point off the flange."
         arguments = (Argument("point", "Vector", POSITION), offset, *_choice(kin))
-        found.append(Method("offset_branch", text, kin.offset_branch, arguments, "Reals", axis_values))
+        found.append(Method("offset_branch", text, kin.offset_branch, arguments, "Reals", axis_values, is_explained=True))
     if kin.offset_configuration is not None:
         text = "The signed margin of every branch for a point off the flange."
         found.append(Method("offset_measures", text, kin.offset_configuration, (axes, offset), "Reals", measures))
@@ -103,7 +103,7 @@ def branch(kin: Kinematics) -> Method:
     """Inverse kinematics on one branch."""
     pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
     text = "The axes of one branch, periods included, limits not."
-    return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape)
+    return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape, is_explained=True)
 
 
 def carried(kin: Kinematics) -> list[Method]:
@@ -129,7 +129,7 @@ def _total_image(kin: Kinematics) -> list[Method]:
 
 def limits(kin: Kinematics) -> Method:
     """The test of the limits."""
-    return Method("limits", "Whether the axes are inside their limits.", kin.limits, (_axes(kin),), "", ())
+    return Method("limits", "Which limit the axes are beyond.", kin.limits, (_axes(kin),), "", (), is_explained=True)
 
 
 def _axes(kin: Kinematics) -> Argument:

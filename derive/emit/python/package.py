@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from textwrap import wrap
@@ -12,11 +13,11 @@ from jinja2 import Environment
 from derive.emit.language import GENERATED, Part, environment
 from derive.emit.python import entries, setup
 from derive.emit.python.calls import every_root
-from derive.emit.python.diagnosis import diagnosis
 from derive.emit.python.layout import WIDTH, fold
 from derive.emit.python.methods import branch, carried, forwards, limits, methods, shared
 from derive.emit.python.printer import ARRAY_NAMES, ScalarPrinter, array_helpers_in, literal, primitives_in
 from derive.emit.python.program import Method, array_body, functions, has_loop, has_search, scalar_body, unpacked
+from derive.emit.python.refusal import explained
 from derive.emit.python.rotation import rotation_functions
 from derive.emit.python.unrolled import array_lines, array_method, can_be_unrolled, has_folds, unrolled
 from derive.ir import roots
@@ -35,10 +36,11 @@ from derive.ir.constants import (
     TIE,
     TRIALS,
 )
+from derive.ir.passes import untold
 from derive.ir.program import FindRoot, Status
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import chooses_by_lengths
-from derive.report.reasons import NO_MEANING
+from derive.report.reasons import NO_MEANING, reasons_of
 
 name = "python"
 _OF_THE_SEARCH = (
@@ -57,7 +59,6 @@ _FIXED = (
     "softkin/_configuration.py",
     "softkin/_core.py",
     "softkin/_coupled.py",
-    "softkin/_diagnosis/__init__.py",
     "softkin/_input.py",
     "softkin/_offset.py",
     "softkin/_orientation.py",
@@ -164,10 +165,11 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     """The class of a mechanism, and its programs on arrays."""
     names = _index(kin)
     scalar = methods(kin)
-    arrays = [*shared(kin), *forwards(kin), branch(kin), limits(kin), *carried(kin)]
+    arrays = [_untold(m) for m in (*shared(kin), *forwards(kin), branch(kin), limits(kin), *carried(kin))]
     array_programs = _array_programs(kin)
     array_types = _ARRAY_TYPES + (("advanced", "initial", "settled") if any(has_loop(m.program) for m in arrays) else ())
-    bodies = [scalar_body(m) for m in scalar]
+    reasons = explained(reasons_of(kin))
+    bodies = [scalar_body(m, reasons) if m.is_explained else scalar_body(_untold(m)) for m in scalar]
     context = {
         **names,
         "kin": kin,
@@ -179,6 +181,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "core_types": sorted({"Image", "Pose", *_core(kin)}),
         "types": _types(kin, scalar),
         "primitives": primitives_in(line for body in (*bodies, setup.setup_body(kin)) for line in body),
+        "names_turns": any("turn_inside" in line for body in bodies for line in body),
         "searches": any(map(has_search, kin.shared)),
         "is_unrolled": can_be_unrolled(kin),
         "chooses_by_lengths": chooses_by_lengths(kin.mechanism),
@@ -202,7 +205,6 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "takes_signs": can_be_unrolled(kin) and kin.branches,
     }
     files = {
-        f"softkin/_diagnosis/{names['module']}.py": templates.get_template("diagnosis.py.j2").render({**names, **diagnosis(kin)}),
         f"softkin/{names['module']}.py": templates.get_template("mechanism.py.j2").render(context),
         f"softkin/_array_programs/{names['module']}.py": templates.get_template("arrays.py.j2").render(array_context),
     }
@@ -255,9 +257,16 @@ def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
     return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Diagnosis", "Parameter", "Reals", "Status"} | lean)
 
 
+def _untold(method: Method) -> Method:
+    """The method, telling a status alone."""
+    return replace(method, program=untold(method.program))
+
+
 def _head(method: Method, prefix: str) -> list[str]:
     arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
     result = f"{method.kind} | Status" if method.kind else "Status"
+    if method.is_explained:
+        result = f"{method.kind} | Diagnosis" if method.kind else "Diagnosis | None"
     return fold(f"def {prefix}{method.name}(self{arguments}) -> {result}:", 4)
 
 

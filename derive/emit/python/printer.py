@@ -46,13 +46,18 @@ def literal(value: float) -> str:
 
 def primitives_in(lines: Iterable[str]) -> list[str]:
     """The primitives and constants that statements use, in alphabetical order."""
-    words = {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", line.partition("#")[0])}
+    words = _words(lines)
     return sorted(words & {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "arctan2", "solve", "sqrt"} - {"abs", "select"})
 
 
 def array_helpers_in(lines: Iterable[str], helpers: Iterable[str]) -> set[str]:
     """Those of some functions that statements on arrays call."""
-    return {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", line.partition("#")[0])} & set(helpers)
+    return _words(lines) & set(helpers)
+
+
+def _words(lines: Iterable[str]) -> set[str]:
+    """The words of statements, without texts and comments."""
+    return {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", re.sub(r'"[^"]*"', "", line).partition("#")[0])}
 
 
 def is_sum_of_squares(value: sp.Expr) -> bool:

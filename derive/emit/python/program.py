@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
 import sympy as sp
-from sympy.core.relational import Relational
 
 from derive.emit.expression import FUNCTION_KEYS
 from derive.emit.python import calls as python_calls
@@ -15,10 +14,12 @@ from derive.emit.python.control_flow import array_arm_lines, fixed
 from derive.emit.python.layout import WIDTH, fold, taken_apart, tuple_of
 from derive.emit.python.loops import array_end, array_head, scalar_end, scalar_head, solve_lines
 from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, literal, spelled
+from derive.emit.python.refusal import PLAIN, Refusals, conjunction
 from derive.ir.constants import (
     DEGREE,
     EDGE,
 )
+from derive.ir.passes import told_in
 from derive.ir.primitives import (
     NearestPeriod,
     Select,
@@ -31,8 +32,9 @@ from derive.ir.program import (
     Program,
     Require,
     Solve,
-    Status,
+    binds,
     expressions,
+    told,
 )
 from derive.ir.symbols import (
     PLACE,
@@ -83,46 +85,40 @@ class Method:
     result: Shape
     is_shared: bool = False
     """Whether other programs call it: then, on arrays, it writes the statuses of its caller."""
+    is_explained: bool = False
+    """Whether, on plain numbers, it refuses with a reason."""
 
 
-@dataclass(frozen=True)
-class Refusals:
-    """How a body on plain numbers refuses: it returns what `answer` says for a status."""
-
-    answer: Callable[[Status], str]
-
-    def lines(self, requires: Sequence[Require]) -> list[str]:
-        """Where conditions that refuse alike do not all hold."""
-        head = fold(f"if not ({conjunction(r.condition for r in requires)}):")
-        return [*head, f"    return {self.answer(requires[0].otherwise)}"]
-
-    def of_loop(self, loop: Iterate) -> str:
-        """Where a loop was never left."""
-        return f"return {self.answer(loop.otherwise)}"
-
-    def of_call(self) -> str:
-        """Where a shared program has refused."""
-        return f"return {python_calls.FOUND}"
-
-    def reads(self, require: Require) -> tuple[sp.Expr, ...]:
-        """What a refusal computes: it must be bound whichever way the program went."""
-        return ()
-
-
-_REFUSALS = Refusals(lambda status: f"Status.{status.name}")
-
-
-def scalar_body(method: Method, owner: str = "self._constants", refusals: Refusals = _REFUSALS) -> list[str]:
-    """The body on plain numbers: the first condition that does not hold returns its status."""
-    lines = [*unpacked(method), *_constants(method, owner), *statement_lines(method.program, refusals, _SCALAR)]
-    return [*lines, *fold(f"return {_values(method, _SCALAR) or 'Status.OK'}")]
+def scalar_body(method: Method, refusals: Refusals = PLAIN) -> list[str]:
+    """The body on plain numbers: the first condition that does not hold refuses."""
+    lines = [*unpacked(method), *_constants(method, "self._constants"), *statement_lines(method.program, refusals, _SCALAR)]
+    return [*lines, *fold(f"return {_values(method, _SCALAR) or refusals.success}")]
 
 
 def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """The statements of a program on plain numbers."""
-    needed = [e for s in program.body if isinstance(s, Require) for e in refusals.reads(s)]
-    wanted = [*(o.value for o in program.outputs), *needed]
-    return item_lines(spared(in_arms(program.body, wanted), wanted), refusals, printer)
+    wanted = [o.value for o in program.outputs]
+    items = spared(in_arms(program.body, wanted), wanted)
+    return item_lines(_told(items, program), refusals, printer)
+
+
+def _told(items: Sequence[Item], program: Program) -> list[Item]:
+    """The statements, with what reasons read and a choice keeps to one of its sides written out in them."""
+    values = {let.name: let.value for let in program.lets()}
+    bound = {s for s in program.inputs if s not in values}
+    found: list[Item] = []
+    for item in items:
+        found.append(item if isinstance(item, Arms) else told_in(item, bound, values))
+        bound |= _bound_by(item)
+    return found
+
+
+def _bound_by(item: Item) -> set[sp.Symbol]:
+    """What is bound behind a statement; behind a choice, what both sides bind."""
+    if not isinstance(item, Arms):
+        return set(binds(item))
+    holds, fails = ({name for inner in side for name in _bound_by(inner)} for side in (item.holds, item.fails))
+    return holds & fails
 
 
 def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:
@@ -144,13 +140,13 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
 
 
 def _refusing(requires: Sequence[Require], refusals: Refusals) -> list[str]:
-    return [*_note(requires[0].note), *refusals.lines(requires)]
+    return [*_note(requires[0].comment), *refusals.lines(requires)]
 
 
 def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """A binding, or a choice between two sides that bind the same or refuse."""
     if isinstance(item, Arms):
-        notes = dict.fromkeys(i.note for i in item.holds if isinstance(i, Let) and i.name in item.names and i.note)
+        notes = dict.fromkeys(i.comment for i in item.holds if isinstance(i, Let) and i.name in item.names and i.comment)
         head = [*(f"# {note}" for note in notes), *fold(f"if {conjunction([item.condition])}:")]
         sides = [[_unnoted(i, item.names) for i in side] for side in (item.holds, item.fails)]
         holds, fails = (_side(side, refusals, printer) for side in sides)
@@ -165,7 +161,7 @@ def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[
 
 def _unnoted(item: Item, names: Sequence[sp.Symbol]) -> Item:
     """The statement without its note, if that stands before the choice that gives it."""
-    return replace(item, note="") if isinstance(item, Let) and item.name in names else item
+    return replace(item, note="", turn_of="") if isinstance(item, Let) and item.name in names else item
 
 
 def _side(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:
@@ -178,7 +174,7 @@ def _turn_lines(let: Let, value: NearestPeriod, printer: ScalarPrinter) -> list[
     low, high = (literal(side * 180.0 - float(EDGE)) for side in (-1, 1))
     away = name if value.args[1] == 0 else f"{name} - {centre}" if value.args[1].is_Symbol else f"{name} - ({centre})"
     return [
-        *let_lines(Let(let.name, value.args[0], let.note), _MODULO_TURNS),
+        *let_lines(replace(let, value=value.args[0]), _MODULO_TURNS),
         f"if not {low} <= {away} < {high}:",
         f"    {name} = nearest_period({name}, {centre})",
     ]
@@ -209,9 +205,8 @@ def array_statements(method: Method) -> list[str]:
         elif isinstance(item, FindRoot):
             lines += python_calls.array_search(item, _ARRAY)
         elif isinstance(item, Require):
-            lines += _note(item.note)
-            for condition in (r.condition for r in same):
-                lines += fold(f"require(status, {_ARRAY.print(condition)}, Status.{item.otherwise.name})")
+            condition = sp.And(*(r.condition for r in same))
+            lines += [*_note(item.comment), *fold(f"require(status, {_ARRAY.print(condition)}, Status.{item.otherwise.name})")]
         else:
             lines += _array_item_lines(item, constants)
     return lines
@@ -270,17 +265,9 @@ def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
     if isinstance(let.value, Select) and value.startswith("("):
         value = value[1:-1]
     line = f"{spelled(let.name.name)} = {value}"
-    if let.note and len(line) + len(let.note) + 4 <= WIDTH:
-        return [f"{line}  # {let.note}"]
-    return [*_note(let.note), *fold(line)]
-
-
-def conjunction(conditions: Iterable[sp.Basic]) -> str:
-    """Conditions that must all hold, as one."""
-    parts = [p for c in conditions for p in (sp.ordered(c.args) if isinstance(c, sp.And) else [c])]
-    if len(parts) == 1:
-        return _SCALAR.print(parts[0])
-    return " and ".join(_SCALAR.print(p) if isinstance(p, Relational) else f"({_SCALAR.print(p)})" for p in parts)
+    if let.comment and len(line) + len(let.comment) + 4 <= WIDTH:
+        return [f"{line}  # {let.comment}"]
+    return [*_note(let.comment), *fold(line)]
 
 
 def _note(note: str) -> list[str]:
@@ -288,11 +275,13 @@ def _note(note: str) -> list[str]:
 
 
 def grouped(body: Sequence[Item]) -> Iterator[tuple[Item, tuple[Require, ...]]]:
-    """Statements in order; conditions that follow each other with the same outcome and note come together."""
+    """Statements in order; conditions that follow each other and refuse alike, about the same subject, come together."""
 
     def key(indexed: tuple[int, Item]) -> tuple[object, ...]:
         index, statement = indexed
-        return (statement.otherwise.name, statement.note) if isinstance(statement, Require) else (index,)
+        if not isinstance(statement, Require):
+            return (index,)
+        return statement.otherwise.name, None if statement.reason is None else statement.reason.subject
 
     for _, group in groupby(enumerate(body), key):
         statements = [statement for _, statement in group]
@@ -311,7 +300,7 @@ def unpacked(method: Method) -> list[str]:
 
 def _read(program: Program) -> set[str]:
     """What a program reads by itself: what those read that it calls is their affair."""
-    values = [e for s in program.body for e in expressions(s)] + [o.value for o in program.outputs]
+    values = [e for s in program.body for e in (*expressions(s), *told(s))] + [o.value for o in program.outputs]
     given = {g.name for s in program.body if isinstance(s, FindRoot) for p in (s.trial, s.finish) for g in s.given(p)}
     found = {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
     return found - {s.name for s in program.bound()}

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from derive.emit.python.diagnosis import Explained
+from dataclasses import replace
+
 from derive.emit.python.methods import ROTATION, ROTATION_ARGUMENT
 from derive.emit.python.printer import ARRAY_NAMES, array_helpers_in, primitives_in
 from derive.emit.python.program import Method, array_body, scalar_body
+from derive.emit.python.refusal import explained
 from derive.equations.rotation_repair import rotation_program
+from derive.ir.passes import untold
 from derive.report.reasons import reasons_of_rotation
 
 _HELPERS = ("Real", "Reals", "elsewhere", "passed", "require", "root", "select", "sqrt", *ARRAY_NAMES.values())
@@ -17,11 +20,11 @@ def rotation_functions() -> dict[str, object]:
     """What the templates read: the bodies, and what they call."""
     summary = "The rotation as it is used."
     method = Method("made_rotation", summary, rotation_program(), (ROTATION_ARGUMENT,), "Rotation", ROTATION)
-    plain = scalar_body(method, refusals=Explained(lambda status: f"Status.{status.name}", reasons_of_rotation()))
-    arrays = array_body(method)
+    plain = scalar_body(method, explained(reasons_of_rotation()))
+    arrays = array_body(replace(method, program=untold(method.program)))
     return {
         "plain": plain,
-        "primitives": primitives_in(line for line in plain if '"' not in line),
+        "primitives": primitives_in(plain),
         "arrays": arrays,
         "helpers": sorted(array_helpers_in(arrays, _HELPERS), key=lambda n: (n[0].islower(), n)),
     }

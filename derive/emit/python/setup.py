@@ -5,7 +5,8 @@ from __future__ import annotations
 from derive.description.mechanism import Parameter, Role
 from derive.emit.python.layout import fold
 from derive.emit.python.printer import ScalarPrinter, literal, spelled
-from derive.emit.python.program import binding_lines, conjunction
+from derive.emit.python.program import binding_lines
+from derive.emit.python.refusal import conjunction
 from derive.ir.constants import (
     UNLIMITED,
 )
@@ -16,6 +17,7 @@ from derive.ir.program import (
     Require,
 )
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.parameters import limited_keys
 
 _PRINTER = ScalarPrinter()
 _TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
@@ -56,8 +58,8 @@ def constants(kin: Kinematics) -> list[str]:
 
 def tested_limits(kin: Kinematics) -> list[str]:
     """The unrolled functions; where limits are not tested, they are nowhere."""
-    bounds = [(name, -1) for name in constants(kin) if name.startswith("lowest_")]
-    bounds += [(name, 1) for name in constants(kin) if name.startswith("highest_")]
+    keys = limited_keys(kin.mechanism)
+    bounds = [(f"lowest_{key}", -1) for key in keys] + [(f"highest_{key}", 1) for key in keys]
     values = ", ".join(f"{name}={literal(side * float(UNLIMITED))}" for name, side in bounds)
     functions = "self._all_checked, self._all_trusted, self._one_trusted"
     if not bounds:
@@ -73,7 +75,8 @@ def tested_limits(kin: Kinematics) -> list[str]:
 def _refusal(statement: Require, inputs: list[str]) -> list[str]:
     read = {s.name for s in statement.condition.free_symbols}
     values = "".join(f", {spelled(name)}={spelled(name)}" for name in inputs if name in read)
-    message = statement.note.replace('"', "'")
+    assert statement.reason is not None
+    message = statement.reason.subject.name.replace('"', "'")
     error = f'raise self._refusal("{message}"{values})'
     return [*fold(f"if not ({conjunction([statement.condition])}):"), *fold(error, 4)]
 

@@ -13,13 +13,14 @@ from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, primitives_i
 from derive.emit.python.program import (
     Argument,
     Method,
-    Refusals,
     array_statements,
     constants_of,
     item_lines,
     let_lines,
     unpacked,
 )
+from derive.emit.python.refusal import Refusals
+from derive.ir.passes import untold
 from derive.ir.program import (
     Let,
     Program,
@@ -108,7 +109,7 @@ def branches(kin: Kinematics, one: Program) -> Program:
 
 def array_method(kin: Kinematics) -> Method:
     """All branches on arrays, turns as commanded, limits not tested."""
-    program = unroll(kin.branch, signs(kin))
+    program = unroll(untold(kin.branch), signs(kin))
     arguments = tuple(a for a in branch(kin).arguments if a.name != "signs")
     return Method("every_branch", "Every slot: its axes and statuses.", program, arguments, "tuple[tuple[Reals, Codes], ...]", ())
 
@@ -144,7 +145,7 @@ def _constants(kin: Kinematics) -> frozenset[str]:
 
 def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers. Near a fold they have no answer, an empty tuple: one branch after the other has."""
-    kin = replace(kin, branch=far_from_folds(kin.branch))
+    kin = replace(kin, branch=untold(far_from_folds(kin.branch)), limits=untold(kin.limits))
     methods, parts = _with_constant_parts(kin, _methods(kin))
     known = (*kin.setup.lets(), *parts)
     functions = (_slots(kin, methods[0], known), _directions(kin, methods[1], known), _direction(kin, methods[2], known, parts))

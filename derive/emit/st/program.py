@@ -92,7 +92,7 @@ def _body(body: Sequence[Statement], printer: StructuredText, refusal: Refusal) 
         lets = [s for s in statements if isinstance(s, Let)]
         if isinstance(first, Require):
             lines = refusal.lines([s for s in statements if isinstance(s, Require)], printer)
-            yield from commented(lines, respelled(first.note, printer.names))
+            yield from commented(lines, respelled(first.comment, printer.names))
         elif isinstance(kind[0], str):
             yield from commented(_choice(kind[0], lets, printer), _notes(lets, printer.names))
         else:
@@ -105,28 +105,29 @@ Kind = tuple[Status | str | None, object, bool]
 def _kind(statement: Statement, printer: StructuredText) -> Kind:
     """What statements in a row have in common that are printed together.
 
-    Conditions that refuse alike are one condition. Those on the size of inputs stay apart: AND evaluates both
-    sides, and what follows them is defined only where they hold. Selections by one condition are one IF.
+    Conditions that refuse alike, about the same subject, are one condition. Those on the size of inputs stay apart: AND
+    evaluates both sides, and what follows them is defined only where they hold. Selections by one condition are one IF.
     """
     if isinstance(statement, Solve | Iterate | Call | FindRoot):
         return None, statement, False
     if isinstance(statement, Require):
-        return statement.otherwise, statement.note, all(map(is_size_test, sp.And.make_args(statement.condition)))
+        subject = None if statement.reason is None else statement.reason.subject
+        return statement.otherwise, subject, all(map(is_size_test, sp.And.make_args(statement.condition)))
     if isinstance(statement.value, Select):
         return printer.print(statement.value.args[0]), "", False
     return None, "", False
 
 
 def _notes(lets: Sequence[Let], names: Mapping[str, str]) -> str:
-    return "; ".join(dict.fromkeys(respelled(let.note, names) for let in lets if let.note))
+    return "; ".join(dict.fromkeys(respelled(let.comment, names) for let in lets if let.comment))
 
 
 def _assignments(lets: Sequence[Let], printer: StructuredText) -> Iterator[str]:
-    note = ""
+    comment = ""
     for let in lets:
         lines = wrapped(_assignment(let, let.value, printer))
-        yield from commented(lines, "" if let.note == note else respelled(let.note, printer.names))
-        note = let.note
+        yield from commented(lines, "" if let.comment == comment else respelled(let.comment, printer.names))
+        comment = let.comment
 
 
 def _choice(condition: str, lets: Sequence[Let], printer: StructuredText) -> list[str]:

@@ -11,7 +11,7 @@ from derive.emit.st.contract import Signature
 from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import conjunction, indented, wrapped
 from derive.ir.program import Iterate, Require, Status
-from derive.report.other_turns import OtherTurn
+from derive.ir.reason import OtherTurn
 from derive.report.reasons import Reasons
 
 REASON, MISSING, TURN = "iReason", "dMissing", "iTurn"
@@ -71,7 +71,7 @@ class Explained(Refusal):
     def _lines(self, requires: Sequence[Require], printer: StructuredText) -> Iterator[str]:
         for check in self.reasons.checks(requires):
             yield from conjunction("IF NOT (", [printer.print(c) for c in check.conditions], ") THEN")
-            if check.missing != 0:
+            if check.missing is not None:
                 yield from indented(wrapped(f"{MISSING} := {printer.print(check.missing)};"))
             yield from indented([*self._numbered(check.reason, check.turns, printer), *self.of(check.status)])
             yield "END_IF"

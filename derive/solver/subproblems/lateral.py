@@ -33,6 +33,7 @@ from derive.ir.symbols import (
 )
 from derive.solver.subproblems.direction import direction, free_angle
 from derive.solver.subproblems.naming import Naming
+from derive.solver.subproblems.shortfall import out_of_reach
 
 Row = tuple[sp.Expr, sp.Expr, sp.Expr]
 _AHEAD = "how far ahead of the axis the point is; negative: behind"
@@ -44,13 +45,12 @@ def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: 
     naming = Naming(problem, equation.lets)
     along, across = naming.named(a, f"point_x_{angle.name}"), naming.named(b, f"point_y_{angle.name}")
     distance = naming.length(f"distance_{angle.name}", along, across, note=f"{angle.name}: of the point from its axis")
-    sigma = real(f"sigma_{angle.name}")
     scale = equation.scales.get(angle, problem.scale)
-    slope = Slope(sigma, a * sine(angle) - b * cosine(angle), scale)
+    slope = Slope(angle, a * sine(angle) - b * cosine(angle), scale)
     note = f"{angle.name}: aimed by the {equation.label} equation"
     if e == 0:
         one_way = _only_way(problem, slope.value)
-        way = sigma if one_way is None else one_way
+        way = slope.sigma if one_way is None else one_way
         ahead = Let(real(f"ahead_{angle.name}"), way * distance, _AHEAD)
         known = direction(
             problem, angle, along=-way * across, across=way * along, measure=distance, note=note, is_length=True
@@ -84,6 +84,7 @@ def _beside(
     words = ("ahead", "ahead_squared", "divisor", "rounding")
     ahead, square, divisor, rounding = (real(f"{word}_{angle.name}") for word in words)
     shortest = FREE_ANGLE * problem.scale
+    reason = out_of_reach(angle, (distance - beside) * (distance + beside), naming.lets)
     determined = sp.Gt(distance, shortest)
     cos_free, sin_free = free_angle(problem, angle)
     cos_value = (along * beside - across * ahead) / divisor
@@ -92,7 +93,7 @@ def _beside(
         *naming.lets,
         Let(rounding, BOUNDARY * shortest**2, "what rounding may leave of a square of lengths"),
         Let(square, (distance - beside) * (distance + beside), note),
-        Require(sp.Ge(square, -BOUNDARY * distance**2 - rounding), Status.UNREACHABLE, f"{angle.name}: out of reach"),
+        Require(sp.Ge(square, -BOUNDARY * distance**2 - rounding), Status.UNREACHABLE, reason=reason),
         Let(ahead, slope.sigma * Root(square), _AHEAD),
         Let(divisor, Select(determined, distance**2, sp.Integer(1))),
         Let(cosine(angle), Select(determined, cos_value, cos_free), "its reference where it is free"),

@@ -17,9 +17,6 @@ from derive.equations.problem import Binding, Equation, Measure, Problem, Slope
 from derive.ir.program import (
     Let,
 )
-from derive.ir.symbols import (
-    real,
-)
 from derive.solver.subproblems.direction import direction
 from derive.solver.subproblems.naming import Naming
 
@@ -67,8 +64,8 @@ def _solve(
     note = f"{angle.name}: polar angle in the {along[0].label} and {across[0].label} equations"
     sigma, slope = sp.Integer(1), None
     if not _is_positive(problem, radius):
-        sigma = real(f"sigma_{angle.name}")
-        slope = Slope(sigma, radius, problem.scale_of(along[0]))
+        slope = Slope(angle, radius, problem.scale_of(along[0]))
+        sigma = slope.sigma
     known = direction(
         problem, angle, along=sigma * a, across=sigma * b, measure=distance, note=note, is_length=True,
         scale=problem.scale_of(along[0]),

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
-from derive.equations.problem import Binding, Equation, Measure, Problem, Slope
+from derive.equations.problem import Binding, Equation, Measure, Problem, Slope, sign_of
 from derive.ir.constants import (
     BOUNDARY,
 )
@@ -29,6 +29,7 @@ from derive.ir.symbols import (
     real,
 )
 from derive.solver.subproblems.naming import Naming
+from derive.solver.subproblems.shortfall import cannot_reach
 
 
 def quadratic(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
@@ -51,10 +52,11 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
     slope = sp.cancel(sp.diff(equation.expression, unknown) / a)
     written_out = slope.xreplace({let.name: let.value for let in equation.lets})
     known_sign = _known_sign(problem, written_out, unknown)
-    sigma = real(f"sigma_{unknown.name}") if known_sign is None else sp.Integer(known_sign)
+    sigma = sign_of(unknown) if known_sign is None else sp.Integer(known_sign)
     half = sp.cancel(scale / (2 * a))
     radicand = sp.factor(sp.cancel(b**2 / (4 * a**2) - c / a))
-    reaches = Require(sp.Ge(square, -BOUNDARY * half**2), Status.UNREACHABLE, f"{equation.label} cannot reach")
+    reason = cannot_reach(equation.label, radicand, naming.lets)
+    reaches = Require(sp.Ge(square, -BOUNDARY * half**2), Status.UNREACHABLE, reason=reason)
     statements: tuple[Statement, ...] = (
         *naming.lets,
         Let(square, radicand, f"{unknown.name}: quadratic in the {equation.label} equation"),
@@ -64,7 +66,7 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
     over = sp.cancel(scale / a)
     if known_sign is not None:
         return Binding("quadratic", (unknown,), statements, measure=Measure(unknown, slope, over, "meet"))
-    return Binding("quadratic", (unknown,), statements, Slope(sigma, slope, over))
+    return Binding("quadratic", (unknown,), statements, Slope(unknown, slope, over))
 
 
 def _known_sign(problem: Problem, slope: sp.Expr, unknown: sp.Symbol) -> int | None:

@@ -15,7 +15,7 @@ from itertools import combinations
 import sympy as sp
 
 from derive.algebra.normal_form import is_compound
-from derive.equations.problem import Binding, Equation, Problem, Slope
+from derive.equations.problem import Binding, Equation, Problem, Slope, sign_of
 from derive.ir.constants import (
     BOUNDARY,
     FREE_ANGLE,
@@ -30,9 +30,13 @@ from derive.ir.program import (
     Statement,
     Status,
 )
+from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import (
     real,
 )
+
+_ASSEMBLY = real("assembly")
+"""What the step is called that finds all unknowns together."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +80,7 @@ def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ..
     statements: list[Statement] = [let for e in used for let in e.lets]
     centres = [_named(statements, s.centre, f"centre_{k}", unknowns) for k, s in enumerate(found, 1)]
     apart = [_named(statements, c - centres[0], f"apart_{k}", unknowns) for k, c in enumerate(centres[1:], 2)]
-    sigma = real("sigma_assembly")
+    sigma = sign_of(_ASSEMBLY)
     parts = _circles(statements, found, apart[0]) if len(unknowns) == 2 else _three(statements, found, apart)
     foot, normal, normal_square, height_square = parts
     foot = _named(statements, foot, "foot", unknowns)
@@ -86,7 +90,7 @@ def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ..
         height_square = found[0].radius_square - foot.dot(foot)
     statements += [
         Let(height, height_square, "the square of the height over the centres"),
-        Require(sp.Ge(height, -BOUNDARY * length_scale**2), Status.IMPOSSIBLE, "the rods do not meet"),
+        Require(sp.Ge(height, -BOUNDARY * length_scale**2), Status.IMPOSSIBLE, reason=about_machine(Why.RODS_APART)),
         Let(real("rise"), sigma * Root(height / normal_square)),
     ]
     for u, c, f, n in zip(unknowns, centres[0], foot, normal, strict=True):
@@ -95,7 +99,7 @@ def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ..
         *(_named(statements, sp.Matrix(unknowns) - c, f"rod_{k}", unknowns) for k, c in enumerate(centres, 1))
     )
     scale = sp.Mul(*[_length(s.radius_square) for s in found])
-    slope = Slope(sigma, rods.det(), scale)
+    slope = Slope(_ASSEMBLY, rods.det(), scale)
     return Binding("spheres", unknowns, tuple(statements), slope)
 
 
@@ -138,7 +142,7 @@ def _normal_square(statements: list[Statement], value: sp.Expr, found: tuple[Sph
     determined = sp.Gt(square, FREE_ANGLE**2 * scale)
     statements += [
         Let(square, value, "normal to the centres"),
-        Require(determined, Status.IMPOSSIBLE, "the centres coincide or lie on a line: nothing holds the plate"),
+        Require(determined, Status.IMPOSSIBLE, reason=about_machine(Why.CENTRES_ON_A_LINE)),
         Let(divisor, Select(determined, square, sp.Integer(1))),
     ]
     return divisor

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.algebra.normal_form import cosine, linear_coefficients, reduce_units, sine
-from derive.equations.problem import Binding, Equation, Problem, Slope
+from derive.equations.problem import Binding, Equation, Problem, Slope, sign_of
 from derive.ir.constants import (
     BOUNDARY,
     SHORTEST_LINK,
@@ -31,12 +31,14 @@ from derive.ir.program import (
     Statement,
     Status,
 )
+from derive.ir.reason import Why, about_joint
 from derive.ir.symbols import (
     real,
 )
 from derive.solver.subproblems.lateral import aimed_at_point
 from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.origin import from_origin
+from derive.solver.subproblems.shortfall import out_of_reach
 
 
 def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
@@ -104,7 +106,7 @@ def _amplitude(
     aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
     divisor = real(f"divisor_{angle.name}")
     guard = (
-        Require(aimable, Status.UNREACHABLE, f"{angle.name}: its effective length is too short"),
+        Require(aimable, Status.UNREACHABLE, reason=about_joint(angle, Why.TOO_SHORT)),
         Let(divisor, Select(aimable, effective, sp.Integer(1))),
     )
     right, factors = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
@@ -180,7 +182,7 @@ def _is_square(value: sp.Expr) -> bool:
 
 
 def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _Amplitude) -> Binding:
-    sigma = real(f"sigma_{angle.name}")
+    sigma = sign_of(angle)
     turned = (amplitude.cos_unit, amplitude.sin_unit) != (1, 0)
     words = ("swing_scale" if turned else "scale", "one_less_cos", "one_plus_cos", "sine_square", "both", "sum")
     scale, less_cos, plus_cos, square, twice, divisor = (real(f"{word}_{angle.name}") for word in words)
@@ -189,6 +191,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     length, right = amplitude.length, amplitude.right
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (_product(length - right), _product(length + right))
+    known = (*amplitude.naming.lets, *(s for s in amplitude.guard if isinstance(s, Let)))
     statements: list[Statement] = [
         *amplitude.naming.lets,
         *amplitude.guard,
@@ -196,7 +199,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
         Let(less_cos, less, "1 - cosine, times the scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
         Let(square, less_cos * plus_cos, "the square of sine times scale"),
-        Require(sp.Ge(square, -BOUNDARY * scale**2), Status.UNREACHABLE, f"{angle.name}: out of reach"),
+        Require(sp.Ge(square, -BOUNDARY * scale**2), Status.UNREACHABLE, reason=out_of_reach(angle, less * more, known)),
         Let(twice, less_cos + plus_cos, "twice the scale, with the rounding of its parts"),
         Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
         Let(cos_name, (plus_cos - less_cos) / divisor),
@@ -207,8 +210,8 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
             Let(cosine(angle), amplitude.cos_unit * cos_name - amplitude.sin_unit * sin_name),
             Let(sine(angle), amplitude.sin_unit * cos_name + amplitude.cos_unit * sin_name),
         ]
-    slope = Slope(sigma, amplitude.slope, amplitude.slope_scale, (length, right))
-    return Binding("trigonometric", (angle,), tuple(statements), slope, cosine_alone=True)
+    slope = Slope(angle, amplitude.slope, amplitude.slope_scale, (length, right))
+    return Binding("trigonometric", (angle,), tuple(statements), slope, cosine_alone=True, yields_to_a_sum=True)
 
 
 def _product(value: sp.Expr) -> sp.Expr:

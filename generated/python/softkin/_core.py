@@ -62,7 +62,7 @@ _STATUSES = tuple(Status)
 
 Pose: TypeAlias = tuple[Vector, Rotation, Reals]
 Image: TypeAlias = tuple[Rotation, Vector, Vector]
-_OneBranch: TypeAlias = Callable[[Reals], Reals | Status]
+_OneBranch: TypeAlias = Callable[[Reals], Reals | Diagnosis]
 """The axes by the signs of the branches."""
 
 
@@ -197,9 +197,9 @@ class Mechanism(ABC):
         branches, turns = self._read(configuration)
         rotation = self._used("inverse", rows)
         axes = self._choose(lambda signs: self._branch(position, rotation, signs, turns, near), branches, near)
-        if isinstance(axes, Status):
+        if isinstance(axes, Diagnosis):
             self._fail("inverse", axes, position=position, rotation=rows, reference=near)
-        return self._limited("inverse", axes, self._beyond)
+        return self._limited("inverse", axes)
 
     def inverse_all(self, frame: FrameLike, reference: Numbers | None = None) -> Sequence[Solution]:
         """Every branch of the inverse, in fixed slots: branch 1 before branch 2, the first byte varies fastest.
@@ -229,7 +229,7 @@ class Mechanism(ABC):
         """
         near = (0.0,) * len(self.AXES) if reference is None else reference
         axes = self._branch(*frame, signs, (0.0,) * len(self.PERIOD_AXES), near)
-        return None if isinstance(axes, Status) else axes
+        return None if isinstance(axes, Diagnosis) else axes
 
     def diagnose(
         self, frame: FrameLike, configuration: Iterable[int] | None = None, reference: Numbers | None = None
@@ -249,20 +249,10 @@ class Mechanism(ABC):
         rotation = self._made(rows)
         if isinstance(rotation, Diagnosis):
             return rotation
-        branch, limits = self._explained()
-        refusals: list[Diagnosis] = []
-
-        def solved(signs: Reals) -> Reals | Status:
-            answer = branch(position, rotation, signs, turns, near)
-            if isinstance(answer, Diagnosis):
-                refusals.append(answer)
-                return answer.status
-            return answer
-
-        axes = self._choose(solved, branches, near)
-        if isinstance(axes, Status):
-            return refusals[0]
-        return limits(axes) if self.checks_limits else Diagnosis(Status.OK, "", 0.0)
+        axes = self._choose(lambda signs: self._branch(position, rotation, signs, turns, near), branches, near)
+        if isinstance(axes, Diagnosis):
+            return axes
+        return self._beyond_limits(axes) or Diagnosis(Status.OK, "", 0.0)
 
     def jacobian(self, axes: Numbers) -> Matrix:
         """The Jacobian: rows as `JACOBIAN_ROWS`, one column an axis, per radian for an axis in degrees."""
@@ -333,9 +323,15 @@ class Mechanism(ABC):
         found: list[Reals | float] = []
         for _, signs in slots((AUTOMATIC,) * self.BRANCHES):
             axes = self._branch(position, rotation, signs, open_turns, reference)
-            status = axes if isinstance(axes, Status) else self._limit_status(axes)
-            found.append(axes if status is Status.OK and not isinstance(axes, Status) else float(status))
+            found.append(self._inside(axes))
         return tuple(found)
+
+    def _inside(self, axes: Reals | Diagnosis) -> Reals | float:
+        """Axes inside their limits, or the number of the status."""
+        if isinstance(axes, Diagnosis):
+            return float(axes.status)
+        refused = self._beyond_limits(axes)
+        return axes if refused is None else float(refused.status)
 
     def _solution(self, slot: Slot, found: Reals | float) -> Solution:
         """A slot with its configuration."""
@@ -356,13 +352,16 @@ class Mechanism(ABC):
         """The same of a call that raises."""
         made = self._made(rotation)
         if isinstance(made, Diagnosis):
-            self._refuse(call, made, rotation)
+            self._refuse_rotation(call, made, rotation)
         return made
 
-    def _refuse(self, call: str, refused: Diagnosis, rotation: Rotation) -> NoReturn:
+    def _refuse_rotation(self, call: str, refused: Diagnosis, rotation: Rotation) -> NoReturn:
         """Raise the error of a call whose rotation is none."""
-        detail = unusable({"rotation": rotation}) or in_words(refused)
-        raise KinematicsError(refused.status, f"{self.NAME}.{call}: {refused.status.meaning}: {detail}")
+        self._refuse(call, refused, unusable({"rotation": rotation}) or in_words(refused))
+
+    def _refuse(self, call: str, refused: Diagnosis, detail: str) -> NoReturn:
+        """Raise the error of an inverse that refuses."""
+        raise KinematicsError(refused.status, f"{self.NAME}.{call}: {refused.status.meaning}: {detail}", refused)
 
     def _near(self, reference: Numbers | None) -> Reals:
         count = len(self.AXES)
@@ -396,13 +395,16 @@ class Mechanism(ABC):
     def _periods(self, axes: Reals) -> Configuration:
         return tuple([1 if FIRST_TURN <= axes[i] < SECOND_TURN else period(axes[i]) for i in self.PERIOD_AXES])
 
-    def _choose(self, program: _OneBranch, branches: Configuration, near: Reals) -> Reals | Status:
-        """The axes on the slot that the branch bytes name, or on the nearest of those that they leave open."""
+    def _choose(self, program: _OneBranch, branches: Configuration, near: Reals) -> Reals | Diagnosis:
+        """The axes on the slot that the branch bytes name, or on the nearest of those that they leave open.
+
+        Where all of these refuse, why the first of them does.
+        """
         named = slots(branches)
         if len(named) == 1:
             return program(named[0][1])
         found = [program(signs) for _, signs in named]
-        answers = [axes for axes in found if not isinstance(axes, Status)]
+        answers = [axes for axes in found if not isinstance(axes, Diagnosis)]
         if not answers:
             return found[0]
         best = answers[0]
@@ -426,26 +428,24 @@ class Mechanism(ABC):
                 return False
         return False
 
-    def _limit_status(self, axes: Reals) -> Status:
-        return self._limits(axes) if self.checks_limits else Status.OK
+    def _beyond_limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond, where limits are tested."""
+        return self._limits(axes) if self.checks_limits else None
 
-    def _limited(self, call: str, axes: Reals, why: Callable[[Reals], str] = lambda _: "") -> Reals:
+    def _limited(self, call: str, axes: Reals) -> Reals:
         """The axes, if they are inside their limits."""
-        status = self._limit_status(axes)
-        if status is not Status.OK:
-            raise KinematicsError(status, f"{self.NAME}.{call}: axes {axes} are beyond the limits{why(axes)}")
+        refused = self._beyond_limits(axes)
+        if refused is not None:
+            message = f"{self.NAME}.{call}: axes {axes} are beyond the limits: {refused.in_words}"
+            raise KinematicsError(refused.status, message, refused)
         return axes
 
-    def _beyond(self, axes: Reals) -> str:
-        """Which limit, and the turn that is inside where there is one."""
-        _, limits = self._explained()
-        found = limits(axes)
-        return f": {found.reason}" + (f", which is turn {found.turn}" if found.turn else "")
-
-    def _fail(self, call: str, status: Status, **inputs: object) -> NoReturn:
+    def _fail(self, call: str, why: Status | Diagnosis, **inputs: object) -> NoReturn:
         """Raise the error of a call without an answer."""
-        detail = unusable(inputs) if status is Status.BAD_INPUT else ""
-        raise KinematicsError(status, f"{self.NAME}.{call}: {status.meaning}" + (f": {detail}" if detail else ""))
+        if isinstance(why, Diagnosis):
+            self._refuse(call, why, (unusable(inputs) if why.status is Status.BAD_INPUT else "") or why.in_words)
+        detail = unusable(inputs) if why is Status.BAD_INPUT else ""
+        raise KinematicsError(why, f"{self.NAME}.{call}: {why.meaning}" + (f": {detail}" if detail else ""))
 
     @abstractmethod
     def _forward(self, axes: Reals) -> Pose | Status: ...
@@ -456,10 +456,10 @@ class Mechanism(ABC):
     @abstractmethod
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
-    ) -> Reals | Status: ...
+    ) -> Reals | Diagnosis: ...
 
     @abstractmethod
-    def _limits(self, axes: Reals) -> Status: ...
+    def _limits(self, axes: Reals) -> Diagnosis | None: ...
 
     @abstractmethod
     def _singularity(self, axes: Reals) -> Reals | Status: ...
@@ -477,10 +477,6 @@ class Mechanism(ABC):
 
     @abstractmethod
     def _image(self) -> Image | Status: ...
-
-    @abstractmethod
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits once more, with reasons."""
 
     @abstractmethod
     def _array_programs(self) -> Programs: ...

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 _Choice: TypeAlias = tuple[Reals, Reals, Reals]
 """Signs of the branches, turns and reference of one part."""
-_Refusal = TypeVar("_Refusal", Status, Diagnosis)
 _Named = TypeVar("_Named", Axis, ConfigurationByte)
 _ORIGIN: Vector = (0.0, 0.0, 0.0)
 
@@ -144,16 +143,11 @@ class Coupled(Mechanism):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
-    ) -> Reals | Status:
-        carrier, wrist = self._split(signs, turns, reference)
-
-        def carry(point: Vector) -> Reals | Status:
-            return self.position_part._branch(point, rotation, *carrier)
-
-        def turn(seen: Rotation) -> Reals | Status:
-            return self.orientation_part._branch(_ORIGIN, seen, *wrist)
-
-        return self._solved(position, rotation, carry, turn)
+    ) -> Reals | Diagnosis:
+        """The axes of both: those that carry to a point, and those that turn as the flange sees it; reasons name the part."""
+        solve = self._position_first if self._flange is None else self._orientation_first
+        axes = solve(position, rotation, *self._split(signs, turns, reference))
+        return Diagnosis(axes, f"{self.orientation_part.NAME}: its end point", 0.0) if isinstance(axes, Status) else axes
 
     def _split(self, signs: Reals, turns: Reals, reference: Reals) -> tuple[_Choice, _Choice]:
         """What each part is given."""
@@ -161,88 +155,44 @@ class Coupled(Mechanism):
         carrier = signs[: first.BRANCHES], turns[:cut], reference[: self._count]
         return carrier, (signs[first.BRANCHES :], turns[cut:], reference[self._count :])
 
-    def _solved(
-        self,
-        position: Vector,
-        rotation: Rotation,
-        carry: Callable[[Vector], Reals | _Refusal],
-        turn: Callable[[Rotation], Reals | _Refusal],
-    ) -> Reals | _Refusal | Status:
-        """The axes of both: those that carry to a point, and those that turn as the flange sees it."""
-        if self._flange is not None:
-            return self._orientation_first(position, rotation, carry, turn, self._flange)
-        return self._position_first(position, rotation, carry, turn)
-
     def _orientation_first(
-        self,
-        position: Vector,
-        rotation: Rotation,
-        carry: Callable[[Vector], Reals | _Refusal],
-        turn: Callable[[Rotation], Reals | _Refusal],
-        flange: Rotation,
-    ) -> Reals | _Refusal | Status:
+        self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
+    ) -> Reals | Diagnosis | Status:
         """On a flange that keeps its orientation: the own axes, where they put the end point, and what carries that."""
-        own = turn(seen_from(flange, rotation))
-        if isinstance(own, Status | Diagnosis):
-            return own
+        flange = self._flange
+        assert flange is not None
+        own = self.orientation_part._branch(_ORIGIN, seen_from(flange, rotation), *wrist)
+        if isinstance(own, Diagnosis):
+            return _of(self.orientation_part, own)
         end = self.orientation_part._forward(own)
         if isinstance(end, Status):
             return end
-        axes = carry(plus(position, turned(flange, end[0]), -1.0))
-        return axes if isinstance(axes, Status | Diagnosis) else axes + own
+        axes = self.position_part._branch(plus(position, turned(flange, end[0]), -1.0), rotation, *carrier)
+        return _of(self.position_part, axes) if isinstance(axes, Diagnosis) else axes + own
 
     def _position_first(
-        self,
-        position: Vector,
-        rotation: Rotation,
-        carry: Callable[[Vector], Reals | _Refusal],
-        turn: Callable[[Rotation], Reals | _Refusal],
-    ) -> Reals | _Refusal | Status:
+        self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
+    ) -> Reals | Diagnosis | Status:
         """On a flange that the position axes turn: in a pair that is allowed they do not depend on the own axes."""
         shift = self.orientation_part._carried(rotation, *self._axis)
         if isinstance(shift, Status):
             return shift
-        axes = carry(plus(position, shift, -1.0))
-        if isinstance(axes, Status | Diagnosis):
-            return axes
+        axes = self.position_part._branch(plus(position, shift, -1.0), rotation, *carrier)
+        if isinstance(axes, Diagnosis):
+            return _of(self.position_part, axes)
         flange = self.position_part._orientation(axes)
         if isinstance(flange, Status):
             return flange
-        own = turn(seen_from(flange, rotation))
-        return own if isinstance(own, Status | Diagnosis) else axes + own
+        own = self.orientation_part._branch(_ORIGIN, seen_from(flange, rotation), *wrist)
+        return _of(self.orientation_part, own) if isinstance(own, Diagnosis) else axes + own
 
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits of both, with reasons that name the part."""
-        first, second = self.position_part, self.orientation_part
-        (carried, carried_limits), (own, own_limits) = first._explained(), second._explained()
-
-        def branch(
-            position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
-        ) -> Reals | Diagnosis:
-            carrier, wrist = self._split(signs, turns, reference)
-
-            def carry(point: Vector) -> Reals | Diagnosis:
-                return _of(first, carried(point, rotation, *carrier))
-
-            def turn(seen: Rotation) -> Reals | Diagnosis:
-                return _of(second, own(_ORIGIN, seen, *wrist))
-
-            axes = self._solved(position, rotation, carry, turn)
-            return Diagnosis(axes, f"{second.NAME}: its end point", 0.0) if isinstance(axes, Status) else axes
-
-        def limits(axes: Reals) -> Diagnosis:
-            found = Diagnosis(Status.OK, "", 0.0)
-            if first.checks_limits:
-                found = _of(first, carried_limits(axes[: self._count]))
-            if found.status is Status.OK and second.checks_limits:
-                found = _of(second, own_limits(axes[self._count :]))
-            return found
-
-        return branch, limits
-
-    def _limits(self, axes: Reals) -> Status:
-        status = self.position_part._limit_status(axes[: self._count])
-        return self.orientation_part._limit_status(axes[self._count :]) if status is Status.OK else status
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        parts = (self.position_part, axes[: self._count]), (self.orientation_part, axes[self._count :])
+        for part, own in parts:
+            refused = part._beyond_limits(own)
+            if refused is not None:
+                return _of(part, refused)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         carried = self.position_part._singularity(axes[: self._count])
@@ -296,14 +246,9 @@ def _check(position: Mechanism, orientation: Mechanism) -> None:
         )
 
 
-_Answer = TypeVar("_Answer", Diagnosis, Reals | Diagnosis)
-
-
-def _of(part: Mechanism, answer: _Answer) -> _Answer:
-    """The answer; a reason names the part that it is about."""
-    if isinstance(answer, Diagnosis) and answer.status is not Status.OK:
-        return answer._replace(reason=f"{part.NAME}: {answer.reason}")
-    return answer
+def _of(part: Mechanism, refused: Diagnosis) -> Diagnosis:
+    """A reason that names the part that it is about."""
+    return refused._replace(reason=f"{part.NAME}: {refused.reason}")
 
 
 def _refused(message: str) -> KinematicsError:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from softkin._core import Mechanism
 from softkin._input import reals
-from softkin._types import Configuration, Numbers, Reals, Status, Vector
+from softkin._types import Configuration, Diagnosis, Numbers, Reals, Status, Vector
 
 
 class OffsetKinematics(Mechanism):
@@ -35,7 +35,7 @@ class OffsetKinematics(Mechanism):
         place, arm, near = _vector(point, "point"), _vector(offset, "offset"), self._near(reference)
         branches, turns = self._read(configuration)
         axes = self._choose(lambda signs: self._offset_branch(place, arm, signs, turns, near), branches, near)
-        if isinstance(axes, Status):
+        if isinstance(axes, Diagnosis):
             self._fail("inverse_offset", axes, point=place, offset=arm, reference=near)
         return self._limited("inverse_offset", axes)
 
@@ -50,7 +50,7 @@ class OffsetKinematics(Mechanism):
     @abstractmethod
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals
-    ) -> Reals | Status: ...
+    ) -> Reals | Diagnosis: ...
 
     @abstractmethod
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status: ...

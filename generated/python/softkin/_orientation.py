@@ -41,7 +41,7 @@ class OrientationKinematics(Mechanism):
         if self.FREEDOM != "three":  # else whatever the flange does, all orientations
             made = made_rotation(given)
             if isinstance(made, Diagnosis):
-                self._refuse("image_on", made, given)
+                self._refuse_rotation("image_on", made, given)
             given = made
         total = self._total_image(given, flange_axis, base_axis)
         if isinstance(total, Status):

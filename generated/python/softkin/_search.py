@@ -41,19 +41,14 @@ class SearchedInverse(Mechanism):
         if isinstance(given, Status):
             return tuple(self._solution(slot, float(given)) for slot in every)
         if not self._is_searched():
-            return tuple(self._one(slot, self._branch(position, rotation, slot[1], turns, near)) for slot in every)
+            answers = (self._branch(position, rotation, slot[1], turns, near) for slot in every)
+            return tuple(map(self._solution, every, map(self._inside, answers)))
         found: dict[Reals, list[Reals]] = {}
         for signs in dict.fromkeys(slot[1][: self.SIDES] for slot in every):
             given = self._search_given(position, rotation, (*signs, *(0.0,) * (self.BRANCHES - self.SIDES)), turns, near)
             for joints in self._all_joints(given) if not isinstance(given, Status) else ():
                 self._sort_in(found, self._from_joints(joints, turns, near))
         return tuple(self._solutions(slot, found.get(slot[1], [])) for slot in every)
-
-    def _one(self, slot: Slot, axes: Reals | Status) -> Solution:
-        """A slot with one solution at most."""
-        if not isinstance(axes, Status) and self._limit_status(axes) is not Status.OK:
-            return self._solution(slot, float(Status.UNREACHABLE))
-        return self._solution(slot, float(axes) if isinstance(axes, Status) else axes)
 
     def _sort_in(self, found: dict[Reals, list[Reals]], axes: Reals | Status) -> None:
         """A solution under the signs of its branch; where branches coincide, under those of both."""
@@ -71,7 +66,7 @@ class SearchedInverse(Mechanism):
 
     def _solutions(self, slot: Slot, found: Sequence[Reals]) -> Solution:
         """A slot with its solutions, nearest first."""
-        allowed = [axes for axes in found if self._limit_status(axes) is Status.OK]
+        allowed = [axes for axes in found if self._beyond_limits(axes) is None]
         first = self._solution(slot, allowed[0] if allowed else float(Status.UNREACHABLE))
         return first._replace(others=tuple(allowed[1:]))
 

@@ -55,16 +55,20 @@ class Status(IntEnum):
 
 
 class KinematicsError(ValueError):
-    """A call without an answer: `status` says why, the message says what."""
+    """A call without an answer: `status` says why, the message says what.
 
-    def __init__(self, status: Status, message: str) -> None:
+    `refusal` has the reason of an inverse that refuses, with its amount; None of any other call.
+    """
+
+    def __init__(self, status: Status, message: str, refusal: Diagnosis | None = None) -> None:
         """An error with its status."""
         super().__init__(message)
         self.status = status
+        self.refusal = refusal
 
-    def __reduce__(self) -> tuple[type[KinematicsError], tuple[Status, str]]:
+    def __reduce__(self) -> tuple[type[KinematicsError], tuple[Status, str, Diagnosis | None]]:
         """Other processes receive it whole."""
-        return type(self), (self.status, str(self))
+        return type(self), (self.status, str(self), self.refusal)
 
 
 class Frame(NamedTuple):
@@ -95,6 +99,12 @@ class Diagnosis(NamedTuple):
     """How much that quantity is short, in its own unit; 0 where that means nothing."""
     turn: int = 0
     """Where the reason is the turn of an axis: the number of one that is inside; 0 where there is none."""
+
+    @property
+    def in_words(self) -> str:
+        """The reason, with the amount and the turn where there are such."""
+        amount = f", missing {self.missing:.4g}" if self.missing else ""
+        return self.reason + amount + (f", which is turn {self.turn}" if self.turn else "")
 
 
 class Singularity(NamedTuple):

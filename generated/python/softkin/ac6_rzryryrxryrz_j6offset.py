@@ -49,9 +49,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, solve, sqrt
 from softkin._root import every_root, nearest_root
@@ -59,8 +59,6 @@ from softkin._search import SearchedInverse
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array_programs.ac6_rzryryrxryrz_j6offset import ArrayPrograms
 
 
@@ -1327,7 +1325,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
@@ -1369,7 +1367,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
             and -1e9 <= ref_a6 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x_closed = x - d6*r13  # the point that the last joints turn about
         wrist_y_closed = y - d6*r23
         # q1: of the point from its axis
@@ -1389,10 +1387,15 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
         # q3: out of reach
         if not ((searched > 0.5) or (sine_square_q3_closed >= -1e-12*swing_scale_q3_tried*swing_scale_q3_tried)):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(effective_q3_tried + reach_closed - a2) + 0.5*abs(a2 + reach_closed - effective_q3_tried)
+                + 0.5*abs(a2 + effective_q3_tried - reach_closed) + 0.5*abs(a2 + effective_q3_tried + reach_closed) - a2
+                - effective_q3_tried - reach_closed
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # without the offset there is no second crossing
         if not ((searched > 0.5) or (sigma_crossing > 0.0)):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "without the offset there is no second crossing", 0.0)
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         free_a2 = (ref_a2 - offset_a2)*DEGREE
         free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -1404,11 +1407,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
         )
         if isinstance(found, Status):
-            return found
+            return Diagnosis(found, "", 0.0)
         found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
-        # A6: the search along it finds no root of this branch
+        # q6: the search along it finds no root of this branch
         if not ((found_ > 0.5) or (searched < 0.5)):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A6: the search along it finds no root of this branch", 0.0)
         if searched > 0.5:
             q1 = found_q1
             q2 = found_q2
@@ -1519,8 +1522,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -1536,24 +1539,72 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         lowest_a5 = k.lowest_a5
         lowest_a6 = k.lowest_a6
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
+        if not (axis_a3 >= lowest_a3):
+            missing = lowest_a3 - axis_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
+        if not (axis_a3 <= highest_a3):
+            missing = axis_a3 - highest_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
         # limits of A4
-        if not (axis_a4 >= lowest_a4 and axis_a4 <= highest_a4):
-            return Status.UNREACHABLE
+        if not (axis_a4 >= lowest_a4):
+            missing = lowest_a4 - axis_a4
+            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
+                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A4: below its lower limit [deg]", missing)
+        if not (axis_a4 <= highest_a4):
+            missing = axis_a4 - highest_a4
+            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
+                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A4: above its upper limit [deg]", missing)
         # limits of A5
-        if not (axis_a5 >= lowest_a5 and axis_a5 <= highest_a5):
-            return Status.UNREACHABLE
+        if not (axis_a5 >= lowest_a5):
+            missing = lowest_a5 - axis_a5
+            if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
+                return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A5: below its lower limit [deg]", missing)
+        if not (axis_a5 <= highest_a5):
+            missing = axis_a5 - highest_a5
+            if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
+                return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A5: above its upper limit [deg]", missing)
         # limits of A6
-        if not (axis_a6 >= lowest_a6 and axis_a6 <= highest_a6):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a6 >= lowest_a6):
+            missing = lowest_a6 - axis_a6
+            if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
+                return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A6: below its lower limit [deg]", missing)
+        if not (axis_a6 <= highest_a6):
+            missing = axis_a6 - highest_a6
+            if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
+                return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A6: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -1790,12 +1841,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             7,
             self._array_programs().try_joint,
         )
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.ac6_rzryryrxryrz_j6offset import branch, limits
-
-        return partial(branch, self, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> ArrayPrograms:
         """The programs on arrays."""

@@ -40,17 +40,15 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.ac6_threeparallel import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -612,7 +610,7 @@ class Ac6ThreeParallel(Mechanism):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
@@ -654,14 +652,15 @@ class Ac6ThreeParallel(Mechanism):
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
             and -1e9 <= ref_a6 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
         if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
-            return Status.UNREACHABLE
+            missing = 0.5*abs(d4 - distance_q1) + 0.5*abs(d4 + distance_q1) - distance_q1
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_shoulder
         # its reference where it is free
@@ -1047,7 +1046,11 @@ class Ac6ThreeParallel(Mechanism):
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12*scale_q3*scale_q3):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(a3 + reach - a2) + 0.5*abs(a2 + reach - a3) + 0.5*abs(a2 + a3 - reach) + 0.5*abs(a2 + a3 + reach)
+                - reach - abs(a2) - abs(a3)
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
@@ -1098,8 +1101,8 @@ class Ac6ThreeParallel(Mechanism):
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -1115,24 +1118,72 @@ class Ac6ThreeParallel(Mechanism):
         lowest_a5 = k.lowest_a5
         lowest_a6 = k.lowest_a6
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
+        if not (axis_a3 >= lowest_a3):
+            missing = lowest_a3 - axis_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
+        if not (axis_a3 <= highest_a3):
+            missing = axis_a3 - highest_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
         # limits of A4
-        if not (axis_a4 >= lowest_a4 and axis_a4 <= highest_a4):
-            return Status.UNREACHABLE
+        if not (axis_a4 >= lowest_a4):
+            missing = lowest_a4 - axis_a4
+            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
+                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A4: below its lower limit [deg]", missing)
+        if not (axis_a4 <= highest_a4):
+            missing = axis_a4 - highest_a4
+            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
+                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A4: above its upper limit [deg]", missing)
         # limits of A5
-        if not (axis_a5 >= lowest_a5 and axis_a5 <= highest_a5):
-            return Status.UNREACHABLE
+        if not (axis_a5 >= lowest_a5):
+            missing = lowest_a5 - axis_a5
+            if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
+                return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A5: below its lower limit [deg]", missing)
+        if not (axis_a5 <= highest_a5):
+            missing = axis_a5 - highest_a5
+            if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
+                return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A5: above its upper limit [deg]", missing)
         # limits of A6
-        if not (axis_a6 >= lowest_a6 and axis_a6 <= highest_a6):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a6 >= lowest_a6):
+            missing = lowest_a6 - axis_a6
+            if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
+                return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A6: below its lower limit [deg]", missing)
+        if not (axis_a6 <= highest_a6):
+            missing = axis_a6 - highest_a6
+            if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
+                return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A6: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -1303,12 +1354,6 @@ class Ac6ThreeParallel(Mechanism):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference) or super()._every_branch(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.ac6_threeparallel import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

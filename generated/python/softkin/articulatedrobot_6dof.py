@@ -40,17 +40,15 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.articulatedrobot_6dof import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -639,7 +637,7 @@ class ArticulatedRobot6DOF(Mechanism):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
@@ -683,14 +681,15 @@ class ArticulatedRobot6DOF(Mechanism):
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
             and -1e9 <= ref_a6 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
         if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
-            return Status.UNREACHABLE
+            missing = 0.5*abs(d3 - distance_q1) + 0.5*abs(d3 + distance_q1) - distance_q1
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
         # how far ahead of the axis the point is; negative: behind
@@ -752,7 +751,11 @@ class ArticulatedRobot6DOF(Mechanism):
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(effective_q3 + reach - a2) + 0.5*abs(a2 + reach - effective_q3)
+                + 0.5*abs(a2 + effective_q3 - reach) + 0.5*abs(a2 + effective_q3 + reach) - a2 - effective_q3 - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # turned within rounding, where the rest can be reached
         if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
             cos_q1 = cos_q1_before_q1_for_q3
@@ -851,8 +854,8 @@ class ArticulatedRobot6DOF(Mechanism):
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -868,24 +871,72 @@ class ArticulatedRobot6DOF(Mechanism):
         lowest_a5 = k.lowest_a5
         lowest_a6 = k.lowest_a6
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
+        if not (axis_a3 >= lowest_a3):
+            missing = lowest_a3 - axis_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
+        if not (axis_a3 <= highest_a3):
+            missing = axis_a3 - highest_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
         # limits of A4
-        if not (axis_a4 >= lowest_a4 and axis_a4 <= highest_a4):
-            return Status.UNREACHABLE
+        if not (axis_a4 >= lowest_a4):
+            missing = lowest_a4 - axis_a4
+            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
+                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A4: below its lower limit [deg]", missing)
+        if not (axis_a4 <= highest_a4):
+            missing = axis_a4 - highest_a4
+            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
+                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A4: above its upper limit [deg]", missing)
         # limits of A5
-        if not (axis_a5 >= lowest_a5 and axis_a5 <= highest_a5):
-            return Status.UNREACHABLE
+        if not (axis_a5 >= lowest_a5):
+            missing = lowest_a5 - axis_a5
+            if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
+                return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A5: below its lower limit [deg]", missing)
+        if not (axis_a5 <= highest_a5):
+            missing = axis_a5 - highest_a5
+            if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
+                return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A5: above its upper limit [deg]", missing)
         # limits of A6
-        if not (axis_a6 >= lowest_a6 and axis_a6 <= highest_a6):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a6 >= lowest_a6):
+            missing = lowest_a6 - axis_a6
+            if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
+                return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A6: below its lower limit [deg]", missing)
+        if not (axis_a6 <= highest_a6):
+            missing = axis_a6 - highest_a6
+            if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
+                return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A6: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -1066,12 +1117,6 @@ class ArticulatedRobot6DOF(Mechanism):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference) or super()._every_branch(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.articulatedrobot_6dof import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -26,9 +26,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
@@ -37,8 +37,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.caxis_tool import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import OrientationPrograms
 
 
@@ -213,7 +211,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         (turn_c,) = turns
@@ -224,13 +222,13 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         single_c = k.single_c
         # numbers of reasonable size
         if not (-1e9 <= ref_c <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
         axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: its turn
@@ -238,16 +236,24 @@ class CAxisTool(OrientationKinematics, TwistChoice):
             axis_c = nearest_period(axis_c, near_c)
         return (axis_c,)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         (axis_c,) = axes
         k = self._constants
         highest_c = k.highest_c
         lowest_c = k.lowest_c
         # limits of C
-        if not (axis_c >= lowest_c and axis_c <= highest_c):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_c >= lowest_c):
+            missing = lowest_c - axis_c
+            if turn := turn_inside(axis_c, lowest_c, highest_c):
+                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "C: below its lower limit [deg]", missing)
+        if not (axis_c <= highest_c):
+            missing = axis_c - highest_c
+            if turn := turn_inside(axis_c, lowest_c, highest_c):
+                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "C: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -301,6 +307,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
             + flange_along*flange_along*flange_axis_x*flange_axis_x
             + flange_along*flange_along*flange_axis_y*flange_axis_y
         )
+        # a part of the end point turns with the flange
         if not (flange_offset <= unnoticed_shift and unmet_offset <= unnoticed_shift):
             return Status.INVALID_COUPLING
         return Status.OK
@@ -361,12 +368,6 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.caxis_tool import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

@@ -30,9 +30,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, sin, sqrt
@@ -40,8 +40,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.crane import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -303,7 +301,7 @@ class Crane(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (turn_theta,) = turns
@@ -320,7 +318,7 @@ class Crane(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_phi <= 1e9
             and -1e9 <= ref_theta <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
@@ -352,8 +350,8 @@ class Crane(OffsetKinematics):
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         return (axis_r, axis_theta, axis_phi)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
         highest_phi = k.highest_phi
@@ -363,15 +361,35 @@ class Crane(OffsetKinematics):
         lowest_r = k.lowest_r
         lowest_theta = k.lowest_theta
         # limits of Theta
-        if not (axis_theta >= lowest_theta and axis_theta <= highest_theta):
-            return Status.UNREACHABLE
+        if not (axis_theta >= lowest_theta):
+            missing = lowest_theta - axis_theta
+            if turn := turn_inside(axis_theta, lowest_theta, highest_theta):
+                return Diagnosis(
+                    Status.UNREACHABLE, "Theta: this turn is beyond a limit, name one inside [deg]", missing, turn,
+                )
+            return Diagnosis(Status.UNREACHABLE, "Theta: below its lower limit [deg]", missing)
+        if not (axis_theta <= highest_theta):
+            missing = axis_theta - highest_theta
+            if turn := turn_inside(axis_theta, lowest_theta, highest_theta):
+                return Diagnosis(
+                    Status.UNREACHABLE, "Theta: this turn is beyond a limit, name one inside [deg]", missing, turn,
+                )
+            return Diagnosis(Status.UNREACHABLE, "Theta: above its upper limit [deg]", missing)
         # limits of R
-        if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return Status.UNREACHABLE
+        if not (axis_r >= lowest_r):
+            missing = lowest_r - axis_r
+            return Diagnosis(Status.UNREACHABLE, "R: below its lower limit [u]", missing)
+        if not (axis_r <= highest_r):
+            missing = axis_r - highest_r
+            return Diagnosis(Status.UNREACHABLE, "R: above its upper limit [u]", missing)
         # limits of Phi
-        if not (axis_phi >= lowest_phi and axis_phi <= highest_phi):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_phi >= lowest_phi):
+            missing = lowest_phi - axis_phi
+            return Diagnosis(Status.UNREACHABLE, "Phi: below its lower limit [deg]", missing)
+        if not (axis_phi <= highest_phi):
+            missing = axis_phi - highest_phi
+            return Diagnosis(Status.UNREACHABLE, "Phi: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -441,7 +459,7 @@ class Crane(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -460,7 +478,7 @@ class Crane(OffsetKinematics):
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_phi <= 1e9
             and -1e9 <= ref_theta <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_z = z - point_z  # the flange behind the point
         flange_x = x - point_x  # the flange behind the point
         flange_y = y - point_y  # the flange behind the point
@@ -525,12 +543,6 @@ class Crane(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.crane import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

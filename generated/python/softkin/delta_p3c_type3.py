@@ -36,9 +36,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
@@ -46,8 +46,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.delta_p3c_type3 import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -718,7 +716,7 @@ class DeltaP3CType3(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
@@ -759,14 +757,14 @@ class DeltaP3CType3(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
         span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm_1):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
         swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
         # square of the third side
@@ -781,14 +779,36 @@ class DeltaP3CType3(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return Status.UNREACHABLE
+            missing = abs(
+                outer_arm_1
+                - root(
+                    0.5*abs(
+                        (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+                        - (
+                            outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+                        )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
+                    )
+                    + outer_arm_1*outer_arm_1 + 0.5*(divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+                    + 0.5*(divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1)
+                    - 0.5*abs(
+                        (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1)
+                        - (
+                            outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+                        )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
+                    )
+                    - (
+                        outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+                    )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm_2):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
         swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
         # square of the third side
@@ -803,14 +823,36 @@ class DeltaP3CType3(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return Status.UNREACHABLE
+            missing = abs(
+                outer_arm_2
+                - root(
+                    0.5*abs(
+                        (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+                        - (
+                            outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+                        )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
+                    )
+                    + outer_arm_2*outer_arm_2 + 0.5*(divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+                    + 0.5*(divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2)
+                    - 0.5*abs(
+                        (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2)
+                        - (
+                            outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+                        )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
+                    )
+                    - (
+                        outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+                    )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > 1e-9*inner_arm_3):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
         swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
         # square of the third side
@@ -825,7 +867,29 @@ class DeltaP3CType3(OffsetKinematics):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-            return Status.UNREACHABLE
+            missing = abs(
+                outer_arm_3
+                - root(
+                    0.5*abs(
+                        (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+                        - (
+                            outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+                        )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
+                    )
+                    + outer_arm_3*outer_arm_3 + 0.5*(divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+                    + 0.5*(divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3)
+                    - 0.5*abs(
+                        (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3)
+                        - (
+                            outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+                        )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
+                    )
+                    - (
+                        outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+                    )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
@@ -878,7 +942,10 @@ class DeltaP3CType3(OffsetKinematics):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_rods_coplanar
+            return Diagnosis(
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+            )
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
@@ -896,8 +963,8 @@ class DeltaP3CType3(OffsetKinematics):
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -907,15 +974,39 @@ class DeltaP3CType3(OffsetKinematics):
         lowest_a2 = k.lowest_a2
         lowest_a3 = k.lowest_a3
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a3 >= lowest_a3):
+            missing = lowest_a3 - axis_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
+        if not (axis_a3 <= highest_a3):
+            missing = axis_a3 - highest_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -1223,7 +1314,7 @@ class DeltaP3CType3(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -1266,7 +1357,7 @@ class DeltaP3CType3(OffsetKinematics):
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
             and -1e9 <= ref_a3 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_z = z - point_z  # the flange behind the point
         flange_x = x - point_x  # the flange behind the point
         span_1_x = flange_x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
@@ -1276,7 +1367,7 @@ class DeltaP3CType3(OffsetKinematics):
         effective_a1 = sqrt(along_a1*along_a1 + flange_z*flange_z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm_1):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
         swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
         # square of the third side
@@ -1291,14 +1382,36 @@ class DeltaP3CType3(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return Status.UNREACHABLE
+            missing = abs(
+                outer_arm_1
+                - root(
+                    0.5*abs(
+                        (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+                        - (
+                            outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+                        )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
+                    )
+                    + outer_arm_1*outer_arm_1 + 0.5*(divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+                    + 0.5*(divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1)
+                    - 0.5*abs(
+                        (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1)
+                        - (
+                            outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+                        )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
+                    )
+                    - (
+                        outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+                    )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = flange_x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = flange_y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + flange_z*flange_z)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm_2):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
         swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
         # square of the third side
@@ -1313,14 +1426,36 @@ class DeltaP3CType3(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return Status.UNREACHABLE
+            missing = abs(
+                outer_arm_2
+                - root(
+                    0.5*abs(
+                        (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+                        - (
+                            outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+                        )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
+                    )
+                    + outer_arm_2*outer_arm_2 + 0.5*(divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+                    + 0.5*(divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2)
+                    - 0.5*abs(
+                        (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2)
+                        - (
+                            outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+                        )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
+                    )
+                    - (
+                        outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+                    )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_x = flange_x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = flange_y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + flange_z*flange_z)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > 1e-9*inner_arm_3):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
         swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
         # square of the third side
@@ -1335,7 +1470,29 @@ class DeltaP3CType3(OffsetKinematics):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-            return Status.UNREACHABLE
+            missing = abs(
+                outer_arm_3
+                - root(
+                    0.5*abs(
+                        (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+                        - (
+                            outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+                        )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
+                    )
+                    + outer_arm_3*outer_arm_3 + 0.5*(divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+                    + 0.5*(divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3)
+                    - 0.5*abs(
+                        (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3)
+                        - (
+                            outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+                        )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
+                    )
+                    - (
+                        outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+                    )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
@@ -1388,7 +1545,10 @@ class DeltaP3CType3(OffsetKinematics):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_rods_coplanar
+            return Diagnosis(
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+            )
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
@@ -1532,12 +1692,6 @@ class DeltaP3CType3(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.delta_p3c_type3 import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -26,7 +26,6 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
@@ -35,8 +34,6 @@ from softkin._types import Axis, Diagnosis, Matrix, Parameter, PlainFrame, Reals
 from softkin._unrolled.gantry3 import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -242,7 +239,7 @@ class Gantry3(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self._constants
@@ -251,14 +248,14 @@ class Gantry3(OffsetKinematics):
         offset_z = k.offset_z
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         axis_x = offset_x + x
         axis_y = offset_y + y
         axis_z = offset_z + z
         return (axis_x, axis_y, axis_z)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_x, axis_y, axis_z = axes
         k = self._constants
         highest_x = k.highest_x
@@ -268,15 +265,27 @@ class Gantry3(OffsetKinematics):
         lowest_y = k.lowest_y
         lowest_z = k.lowest_z
         # limits of X
-        if not (axis_x >= lowest_x and axis_x <= highest_x):
-            return Status.UNREACHABLE
+        if not (axis_x >= lowest_x):
+            missing = lowest_x - axis_x
+            return Diagnosis(Status.UNREACHABLE, "X: below its lower limit [u]", missing)
+        if not (axis_x <= highest_x):
+            missing = axis_x - highest_x
+            return Diagnosis(Status.UNREACHABLE, "X: above its upper limit [u]", missing)
         # limits of Y
-        if not (axis_y >= lowest_y and axis_y <= highest_y):
-            return Status.UNREACHABLE
+        if not (axis_y >= lowest_y):
+            missing = lowest_y - axis_y
+            return Diagnosis(Status.UNREACHABLE, "Y: below its lower limit [u]", missing)
+        if not (axis_y <= highest_y):
+            missing = axis_y - highest_y
+            return Diagnosis(Status.UNREACHABLE, "Y: above its upper limit [u]", missing)
         # limits of Z
-        if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_z >= lowest_z):
+            missing = lowest_z - axis_z
+            return Diagnosis(Status.UNREACHABLE, "Z: below its lower limit [u]", missing)
+        if not (axis_z <= highest_z):
+            missing = axis_z - highest_z
+            return Diagnosis(Status.UNREACHABLE, "Z: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -300,7 +309,7 @@ class Gantry3(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -313,7 +322,7 @@ class Gantry3(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         joint_x = x - point_x  # joint_x: affine in the x equation
         axis_x = joint_x + offset_x
         joint_y = y - point_y  # joint_y: affine in the y equation
@@ -343,12 +352,6 @@ class Gantry3(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.gantry3 import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

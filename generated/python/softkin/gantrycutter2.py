@@ -27,9 +27,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
@@ -38,8 +38,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.gantrycutter2 import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -283,7 +281,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
@@ -299,16 +297,17 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         single_r = k.single_r
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_r <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         axis_x = offset_x + x
         axis_y = offset_y + y
         direction_y_r = direction_r*heading_across
@@ -319,8 +318,8 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
             axis_r = nearest_period(axis_r, near_r)
         return (axis_x, axis_y, axis_r)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_x, axis_y, axis_r = axes
         k = self._constants
         highest_r = k.highest_r
@@ -330,15 +329,31 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         lowest_x = k.lowest_x
         lowest_y = k.lowest_y
         # limits of R
-        if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return Status.UNREACHABLE
+        if not (axis_r >= lowest_r):
+            missing = lowest_r - axis_r
+            if turn := turn_inside(axis_r, lowest_r, highest_r):
+                return Diagnosis(Status.UNREACHABLE, "R: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "R: below its lower limit [deg]", missing)
+        if not (axis_r <= highest_r):
+            missing = axis_r - highest_r
+            if turn := turn_inside(axis_r, lowest_r, highest_r):
+                return Diagnosis(Status.UNREACHABLE, "R: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "R: above its upper limit [deg]", missing)
         # limits of X
-        if not (axis_x >= lowest_x and axis_x <= highest_x):
-            return Status.UNREACHABLE
+        if not (axis_x >= lowest_x):
+            missing = lowest_x - axis_x
+            return Diagnosis(Status.UNREACHABLE, "X: below its lower limit [u]", missing)
+        if not (axis_x <= highest_x):
+            missing = axis_x - highest_x
+            return Diagnosis(Status.UNREACHABLE, "X: above its upper limit [u]", missing)
         # limits of Y
-        if not (axis_y >= lowest_y and axis_y <= highest_y):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_y >= lowest_y):
+            missing = lowest_y - axis_y
+            return Diagnosis(Status.UNREACHABLE, "Y: below its lower limit [u]", missing)
+        if not (axis_y <= highest_y):
+            missing = axis_y - highest_y
+            return Diagnosis(Status.UNREACHABLE, "Y: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -395,7 +410,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -411,10 +426,11 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_r <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(point_z - z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         free_r = (ref_r - offset_r)*DEGREE
         cos_r = cos(free_r)
         sin_r = sin(free_r)
@@ -447,12 +463,6 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.gantrycutter2 import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

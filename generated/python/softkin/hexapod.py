@@ -45,18 +45,15 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
-from softkin._scalar import DEGREE, cos, root, sin, solve, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, root, sin, solve, sqrt
 from softkin._start import IterativeForward
 from softkin._types import Axis, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.hexapod import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import StartedPrograms
 
 
@@ -1506,7 +1503,7 @@ class Hexapod(IterativeForward):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
@@ -1597,7 +1594,7 @@ class Hexapod(IterativeForward):
         platform_radius = k.platform_radius
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x  # rod 1
         span_1_y = y + platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23 - base_1_y  # rod 1
         span_1_z = z + platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33 - base_1_z  # rod 1
@@ -1606,7 +1603,7 @@ class Hexapod(IterativeForward):
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > 1e-9*machine_scale):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "leg 1: without length it has no direction", 0.0)
         span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x  # rod 2
         span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y  # rod 2
         span_2_z = z + platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33 - base_2_z  # rod 2
@@ -1615,7 +1612,7 @@ class Hexapod(IterativeForward):
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > 1e-9*machine_scale):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "leg 2: without length it has no direction", 0.0)
         span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x  # rod 3
         span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y  # rod 3
         span_3_z = z + platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33 - base_3_z  # rod 3
@@ -1624,7 +1621,7 @@ class Hexapod(IterativeForward):
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > 1e-9*machine_scale):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "leg 3: without length it has no direction", 0.0)
         span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x  # rod 4
         span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y  # rod 4
         span_4_z = z + platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33 - base_4_z  # rod 4
@@ -1633,7 +1630,7 @@ class Hexapod(IterativeForward):
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > 1e-9*machine_scale):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "leg 4: without length it has no direction", 0.0)
         span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x  # rod 5
         span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y  # rod 5
         span_5_z = z + platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33 - base_5_z  # rod 5
@@ -1642,7 +1639,7 @@ class Hexapod(IterativeForward):
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > 1e-9*machine_scale):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "leg 5: without length it has no direction", 0.0)
         span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x  # rod 6
         span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y  # rod 6
         span_6_z = z + platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33 - base_6_z  # rod 6
@@ -1651,7 +1648,7 @@ class Hexapod(IterativeForward):
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
         if not (l6 > 1e-9*machine_scale):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "leg 6: without length it has no direction", 0.0)
         # leg 1: its direction, and the moment of that about the platform's origin
         divisor_1 = l1 if l1 > 1e-9*machine_scale else 1.0
         along_1_x = span_1_x/divisor_1
@@ -1660,7 +1657,14 @@ class Hexapod(IterativeForward):
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
         # leg 1: its joint on the base bends beyond its cone
         if not (cos_base_lean_1 >= least_cos_base):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_base_lean_1*cos_base_lean_1) + 0.0, cos_base_lean_1 + 0.0)
+                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 1: its joint on the base bends beyond its cone [deg]", missing)
         # leg 2: its direction, and the moment of that about the platform's origin
         divisor_2 = l2 if l2 > 1e-9*machine_scale else 1.0
         along_2_x = span_2_x/divisor_2
@@ -1669,7 +1673,14 @@ class Hexapod(IterativeForward):
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
         # leg 2: its joint on the base bends beyond its cone
         if not (cos_base_lean_2 >= least_cos_base):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_base_lean_2*cos_base_lean_2) + 0.0, cos_base_lean_2 + 0.0)
+                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 2: its joint on the base bends beyond its cone [deg]", missing)
         # leg 3: its direction, and the moment of that about the platform's origin
         divisor_3 = l3 if l3 > 1e-9*machine_scale else 1.0
         along_3_x = span_3_x/divisor_3
@@ -1678,7 +1689,14 @@ class Hexapod(IterativeForward):
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
         # leg 3: its joint on the base bends beyond its cone
         if not (cos_base_lean_3 >= least_cos_base):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_base_lean_3*cos_base_lean_3) + 0.0, cos_base_lean_3 + 0.0)
+                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 3: its joint on the base bends beyond its cone [deg]", missing)
         # leg 4: its direction, and the moment of that about the platform's origin
         divisor_4 = l4 if l4 > 1e-9*machine_scale else 1.0
         along_4_x = span_4_x/divisor_4
@@ -1687,7 +1705,14 @@ class Hexapod(IterativeForward):
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
         # leg 4: its joint on the base bends beyond its cone
         if not (cos_base_lean_4 >= least_cos_base):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_base_lean_4*cos_base_lean_4) + 0.0, cos_base_lean_4 + 0.0)
+                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 4: its joint on the base bends beyond its cone [deg]", missing)
         # leg 5: its direction, and the moment of that about the platform's origin
         divisor_5 = l5 if l5 > 1e-9*machine_scale else 1.0
         along_5_x = span_5_x/divisor_5
@@ -1696,7 +1721,14 @@ class Hexapod(IterativeForward):
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
         # leg 5: its joint on the base bends beyond its cone
         if not (cos_base_lean_5 >= least_cos_base):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_base_lean_5*cos_base_lean_5) + 0.0, cos_base_lean_5 + 0.0)
+                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 5: its joint on the base bends beyond its cone [deg]", missing)
         # leg 6: its direction, and the moment of that about the platform's origin
         divisor_6 = l6 if l6 > 1e-9*machine_scale else 1.0
         along_6_x = span_6_x/divisor_6
@@ -1705,49 +1737,98 @@ class Hexapod(IterativeForward):
         cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
         # leg 6: its joint on the base bends beyond its cone
         if not (cos_base_lean_6 >= least_cos_base):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_base_lean_6*cos_base_lean_6) + 0.0, cos_base_lean_6 + 0.0)
+                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 6: its joint on the base bends beyond its cone [deg]", missing)
         cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
         cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
         cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
         cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
         # leg 1: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_1 >= least_cos_plate):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_plate_lean_1*cos_plate_lean_1) + 0.0, cos_plate_lean_1 + 0.0)
+                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 1: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
         cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
         cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
         cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
         # leg 2: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_2 >= least_cos_plate):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_plate_lean_2*cos_plate_lean_2) + 0.0, cos_plate_lean_2 + 0.0)
+                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 2: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
         cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
         cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
         cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
         # leg 3: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_3 >= least_cos_plate):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_plate_lean_3*cos_plate_lean_3) + 0.0, cos_plate_lean_3 + 0.0)
+                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 3: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
         cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
         cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
         cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
         # leg 4: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_4 >= least_cos_plate):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_plate_lean_4*cos_plate_lean_4) + 0.0, cos_plate_lean_4 + 0.0)
+                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 4: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
         cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
         cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
         cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
         # leg 5: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_5 >= least_cos_plate):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_plate_lean_5*cos_plate_lean_5) + 0.0, cos_plate_lean_5 + 0.0)
+                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 5: its joint on the plate bends beyond its cone [deg]", missing)
         cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
         cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
         cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
         cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
         # leg 6: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_6 >= least_cos_plate):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(root(1.0 - cos_plate_lean_6*cos_plate_lean_6) + 0.0, cos_plate_lean_6 + 0.0)
+                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "leg 6: its joint on the plate bends beyond its cone [deg]", missing)
         arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
         arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
         moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
@@ -1798,7 +1879,10 @@ class Hexapod(IterativeForward):
         )
         # rods_dependent: the other assembly mode, or too near to losing the plate
         if not (assembly_sign*determinant >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - assembly_sign*determinant
+            return Diagnosis(
+                Status.UNREACHABLE, "rods_dependent: the other assembly mode, or too near to losing the plate", missing,
+            )
         axis_l1 = l1 + offset_l1
         axis_l2 = l2 + offset_l2
         axis_l3 = l3 + offset_l3
@@ -1807,8 +1891,8 @@ class Hexapod(IterativeForward):
         axis_l6 = l6 + offset_l6
         return (axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self._constants
         highest_l1 = k.highest_l1
@@ -1824,24 +1908,48 @@ class Hexapod(IterativeForward):
         lowest_l5 = k.lowest_l5
         lowest_l6 = k.lowest_l6
         # limits of L1
-        if not (axis_l1 >= lowest_l1 and axis_l1 <= highest_l1):
-            return Status.UNREACHABLE
+        if not (axis_l1 >= lowest_l1):
+            missing = lowest_l1 - axis_l1
+            return Diagnosis(Status.UNREACHABLE, "L1: below its lower limit [u]", missing)
+        if not (axis_l1 <= highest_l1):
+            missing = axis_l1 - highest_l1
+            return Diagnosis(Status.UNREACHABLE, "L1: above its upper limit [u]", missing)
         # limits of L2
-        if not (axis_l2 >= lowest_l2 and axis_l2 <= highest_l2):
-            return Status.UNREACHABLE
+        if not (axis_l2 >= lowest_l2):
+            missing = lowest_l2 - axis_l2
+            return Diagnosis(Status.UNREACHABLE, "L2: below its lower limit [u]", missing)
+        if not (axis_l2 <= highest_l2):
+            missing = axis_l2 - highest_l2
+            return Diagnosis(Status.UNREACHABLE, "L2: above its upper limit [u]", missing)
         # limits of L3
-        if not (axis_l3 >= lowest_l3 and axis_l3 <= highest_l3):
-            return Status.UNREACHABLE
+        if not (axis_l3 >= lowest_l3):
+            missing = lowest_l3 - axis_l3
+            return Diagnosis(Status.UNREACHABLE, "L3: below its lower limit [u]", missing)
+        if not (axis_l3 <= highest_l3):
+            missing = axis_l3 - highest_l3
+            return Diagnosis(Status.UNREACHABLE, "L3: above its upper limit [u]", missing)
         # limits of L4
-        if not (axis_l4 >= lowest_l4 and axis_l4 <= highest_l4):
-            return Status.UNREACHABLE
+        if not (axis_l4 >= lowest_l4):
+            missing = lowest_l4 - axis_l4
+            return Diagnosis(Status.UNREACHABLE, "L4: below its lower limit [u]", missing)
+        if not (axis_l4 <= highest_l4):
+            missing = axis_l4 - highest_l4
+            return Diagnosis(Status.UNREACHABLE, "L4: above its upper limit [u]", missing)
         # limits of L5
-        if not (axis_l5 >= lowest_l5 and axis_l5 <= highest_l5):
-            return Status.UNREACHABLE
+        if not (axis_l5 >= lowest_l5):
+            missing = lowest_l5 - axis_l5
+            return Diagnosis(Status.UNREACHABLE, "L5: below its lower limit [u]", missing)
+        if not (axis_l5 <= highest_l5):
+            missing = axis_l5 - highest_l5
+            return Diagnosis(Status.UNREACHABLE, "L5: above its upper limit [u]", missing)
         # limits of L6
-        if not (axis_l6 >= lowest_l6 and axis_l6 <= highest_l6):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_l6 >= lowest_l6):
+            missing = lowest_l6 - axis_l6
+            return Diagnosis(Status.UNREACHABLE, "L6: below its lower limit [u]", missing)
+        if not (axis_l6 <= highest_l6):
+            missing = axis_l6 - highest_l6
+            return Diagnosis(Status.UNREACHABLE, "L6: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -1968,12 +2076,6 @@ class Hexapod(IterativeForward):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.hexapod import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> StartedPrograms:
         """The programs on arrays."""

@@ -27,7 +27,6 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
@@ -36,8 +35,6 @@ from softkin._types import Axis, Diagnosis, Matrix, Parameter, PlainFrame, Reals
 from softkin._unrolled.hgantry3 import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -310,7 +307,7 @@ class HGantry3(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self._constants
@@ -319,7 +316,7 @@ class HGantry3(OffsetKinematics):
         offset_z = k.offset_z
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
         b = -x - y
@@ -327,8 +324,8 @@ class HGantry3(OffsetKinematics):
         axis_z = offset_z + z
         return (axis_a, axis_b, axis_z)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a, axis_b, axis_z = axes
         k = self._constants
         highest_a = k.highest_a
@@ -344,25 +341,45 @@ class HGantry3(OffsetKinematics):
         offset_a = k.offset_a
         offset_b = k.offset_b
         # limits of A
-        if not (axis_a >= lowest_a and axis_a <= highest_a):
-            return Status.UNREACHABLE
+        if not (axis_a >= lowest_a):
+            missing = lowest_a - axis_a
+            return Diagnosis(Status.UNREACHABLE, "A: below its lower limit [u]", missing)
+        if not (axis_a <= highest_a):
+            missing = axis_a - highest_a
+            return Diagnosis(Status.UNREACHABLE, "A: above its upper limit [u]", missing)
         # limits of B
-        if not (axis_b >= lowest_b and axis_b <= highest_b):
-            return Status.UNREACHABLE
+        if not (axis_b >= lowest_b):
+            missing = lowest_b - axis_b
+            return Diagnosis(Status.UNREACHABLE, "B: below its lower limit [u]", missing)
+        if not (axis_b <= highest_b):
+            missing = axis_b - highest_b
+            return Diagnosis(Status.UNREACHABLE, "B: above its upper limit [u]", missing)
         # limits of Z
-        if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return Status.UNREACHABLE
+        if not (axis_z >= lowest_z):
+            missing = lowest_z - axis_z
+            return Diagnosis(Status.UNREACHABLE, "Z: below its lower limit [u]", missing)
+        if not (axis_z <= highest_z):
+            missing = axis_z - highest_z
+            return Diagnosis(Status.UNREACHABLE, "Z: above its upper limit [u]", missing)
         a = axis_a - offset_a
         b = axis_b - offset_b
         value_x = 0.5*a - 0.5*b  # X of the carriage
         # limits of X of the carriage
-        if not (value_x >= lowest_x and value_x <= highest_x):
-            return Status.UNREACHABLE
+        if not (value_x >= lowest_x):
+            missing = lowest_x - value_x
+            return Diagnosis(Status.UNREACHABLE, "X of the carriage: below its lower limit [u]", missing)
+        if not (value_x <= highest_x):
+            missing = value_x - highest_x
+            return Diagnosis(Status.UNREACHABLE, "X of the carriage: above its upper limit [u]", missing)
         value_y = -0.5*a - 0.5*b  # Y of the carriage
         # limits of Y of the carriage
-        if not (value_y >= lowest_y and value_y <= highest_y):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (value_y >= lowest_y):
+            missing = lowest_y - value_y
+            return Diagnosis(Status.UNREACHABLE, "Y of the carriage: below its lower limit [u]", missing)
+        if not (value_y <= highest_y):
+            missing = value_y - highest_y
+            return Diagnosis(Status.UNREACHABLE, "Y of the carriage: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -386,7 +403,7 @@ class HGantry3(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -399,7 +416,7 @@ class HGantry3(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         a = point_y + x - point_x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
         b = point_x + point_y - x - y
@@ -429,12 +446,6 @@ class HGantry3(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.hgantry3 import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -32,17 +32,15 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.kin_5axes import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -419,7 +417,7 @@ class Kin5Axes(Mechanism):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
@@ -443,7 +441,7 @@ class Kin5Axes(Mechanism):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a <= 1e9
             and -1e9 <= ref_b <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length*tool_side
@@ -474,8 +472,8 @@ class Kin5Axes(Mechanism):
             axis_b = nearest_period(axis_b, near_b)
         return (axis_x, axis_y, axis_z, axis_a, axis_b)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self._constants
         highest_a = k.highest_a
@@ -489,21 +487,49 @@ class Kin5Axes(Mechanism):
         lowest_y = k.lowest_y
         lowest_z = k.lowest_z
         # limits of A
-        if not (axis_a >= lowest_a and axis_a <= highest_a):
-            return Status.UNREACHABLE
+        if not (axis_a >= lowest_a):
+            missing = lowest_a - axis_a
+            if turn := turn_inside(axis_a, lowest_a, highest_a):
+                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A: below its lower limit [deg]", missing)
+        if not (axis_a <= highest_a):
+            missing = axis_a - highest_a
+            if turn := turn_inside(axis_a, lowest_a, highest_a):
+                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A: above its upper limit [deg]", missing)
         # limits of B
-        if not (axis_b >= lowest_b and axis_b <= highest_b):
-            return Status.UNREACHABLE
+        if not (axis_b >= lowest_b):
+            missing = lowest_b - axis_b
+            if turn := turn_inside(axis_b, lowest_b, highest_b):
+                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "B: below its lower limit [deg]", missing)
+        if not (axis_b <= highest_b):
+            missing = axis_b - highest_b
+            if turn := turn_inside(axis_b, lowest_b, highest_b):
+                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "B: above its upper limit [deg]", missing)
         # limits of X
-        if not (axis_x >= lowest_x and axis_x <= highest_x):
-            return Status.UNREACHABLE
+        if not (axis_x >= lowest_x):
+            missing = lowest_x - axis_x
+            return Diagnosis(Status.UNREACHABLE, "X: below its lower limit [u]", missing)
+        if not (axis_x <= highest_x):
+            missing = axis_x - highest_x
+            return Diagnosis(Status.UNREACHABLE, "X: above its upper limit [u]", missing)
         # limits of Y
-        if not (axis_y >= lowest_y and axis_y <= highest_y):
-            return Status.UNREACHABLE
+        if not (axis_y >= lowest_y):
+            missing = lowest_y - axis_y
+            return Diagnosis(Status.UNREACHABLE, "Y: below its lower limit [u]", missing)
+        if not (axis_y <= highest_y):
+            missing = axis_y - highest_y
+            return Diagnosis(Status.UNREACHABLE, "Y: above its upper limit [u]", missing)
         # limits of Z
-        if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_z >= lowest_z):
+            missing = lowest_z - axis_z
+            return Diagnosis(Status.UNREACHABLE, "Z: below its lower limit [u]", missing)
+        if not (axis_z <= highest_z):
+            missing = axis_z - highest_z
+            return Diagnosis(Status.UNREACHABLE, "Z: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -580,12 +606,6 @@ class Kin5Axes(Mechanism):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.kin_5axes import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -32,9 +32,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
@@ -42,8 +42,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.p2c_type2 import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -374,7 +372,7 @@ class P2CType2(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2 = signs
@@ -399,15 +397,16 @@ class P2CType2(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         span_1_x = displacement + x - 0.5*tcp_link_distance  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
         swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
         # 1 - cosine, times the scale
@@ -417,12 +416,17 @@ class P2CType2(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(inner_arm + outer_arm - divisor_a1) + 0.5*abs(divisor_a1 + outer_arm - inner_arm)
+                + 0.5*abs(divisor_a1 + inner_arm - outer_arm) + 0.5*abs(divisor_a1 + inner_arm + outer_arm) - divisor_a1
+                - inner_arm - outer_arm
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = 0.5*tcp_link_distance + x - displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
         swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
         # 1 - cosine, times the scale
@@ -432,7 +436,12 @@ class P2CType2(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(inner_arm + outer_arm - divisor_a2) + 0.5*abs(divisor_a2 + outer_arm - inner_arm)
+                + 0.5*abs(divisor_a2 + inner_arm - outer_arm) + 0.5*abs(divisor_a2 + inner_arm + outer_arm) - divisor_a2
+                - inner_arm - outer_arm
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
@@ -456,7 +465,10 @@ class P2CType2(OffsetKinematics):
         type2_arms_aligned = assembly_sign*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(outer_arm*outer_arm)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_arms_aligned
+            return Diagnosis(
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+            )
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
@@ -469,8 +481,8 @@ class P2CType2(OffsetKinematics):
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -478,12 +490,28 @@ class P2CType2(OffsetKinematics):
         lowest_a1 = k.lowest_a1
         lowest_a2 = k.lowest_a2
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -616,7 +644,7 @@ class P2CType2(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -642,17 +670,18 @@ class P2CType2(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(point_z - z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_y = y - point_y  # the flange behind the point
         flange_x = x - point_x  # the flange behind the point
         span_1_x = displacement + flange_x - 0.5*tcp_link_distance  # rod 1
         effective_a1 = sqrt(flange_y*flange_y + span_1_x*span_1_x)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
         swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
         # 1 - cosine, times the scale
@@ -662,12 +691,17 @@ class P2CType2(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(inner_arm + outer_arm - divisor_a1) + 0.5*abs(divisor_a1 + outer_arm - inner_arm)
+                + 0.5*abs(divisor_a1 + inner_arm - outer_arm) + 0.5*abs(divisor_a1 + inner_arm + outer_arm) - divisor_a1
+                - inner_arm - outer_arm
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = flange_x + 0.5*tcp_link_distance - displacement  # rod 2
         effective_a2 = sqrt(flange_y*flange_y + span_2_x*span_2_x)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
         swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
         # 1 - cosine, times the scale
@@ -677,7 +711,12 @@ class P2CType2(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(inner_arm + outer_arm - divisor_a2) + 0.5*abs(divisor_a2 + outer_arm - inner_arm)
+                + 0.5*abs(divisor_a2 + inner_arm - outer_arm) + 0.5*abs(divisor_a2 + inner_arm + outer_arm) - divisor_a2
+                - inner_arm - outer_arm
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
@@ -701,7 +740,10 @@ class P2CType2(OffsetKinematics):
         type2_arms_aligned = assembly_sign*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(outer_arm*outer_arm)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_arms_aligned
+            return Diagnosis(
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+            )
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
@@ -778,12 +820,6 @@ class P2CType2(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.p2c_type2 import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -30,7 +30,6 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._configuration import Criterion
@@ -41,8 +40,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.p2x_type1 import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -369,7 +366,7 @@ class P2XType1(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2 = signs
@@ -387,20 +384,23 @@ class P2XType1(OffsetKinematics):
         tcp_offset_2 = k.tcp_offset_2
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         span_1_y = y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
         # rod 1 cannot reach
         if not (root_square_a1 >= -1e-12*arm_length_1*arm_length_1):
-            return Status.UNREACHABLE
+            missing = 0.5*abs(arm_length_1 - span_1_y) + 0.5*abs(arm_length_1 + span_1_y) - arm_length_1
+            return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_y = y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
         # rod 2 cannot reach
         if not (root_square_a2 >= -1e-12*arm_length_2*arm_length_2):
-            return Status.UNREACHABLE
+            missing = 0.5*abs(arm_length_2 - span_2_y) + 0.5*abs(arm_length_2 + span_2_y) - arm_length_2
+            return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_1_x = x - tcp_offset_1  # rod 1
         a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
         pivot_1_x = a1 + tcp_offset_1  # rod 1
@@ -414,13 +414,16 @@ class P2XType1(OffsetKinematics):
         type2_arms_aligned = assembly_sign*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(arm_length_1*arm_length_2)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_arms_aligned
+            return Diagnosis(
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+            )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -428,12 +431,20 @@ class P2XType1(OffsetKinematics):
         lowest_a1 = k.lowest_a1
         lowest_a2 = k.lowest_a2
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -562,7 +573,7 @@ class P2XType1(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -584,21 +595,24 @@ class P2XType1(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(point_z - z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_y = y - point_y  # the flange behind the point
         span_1_y = flange_y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
         # rod 1 cannot reach
         if not (root_square_a1 >= -1e-12*arm_length_1*arm_length_1):
-            return Status.UNREACHABLE
+            missing = 0.5*abs(arm_length_1 - span_1_y) + 0.5*abs(arm_length_1 + span_1_y) - arm_length_1
+            return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_y = flange_y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
         # rod 2 cannot reach
         if not (root_square_a2 >= -1e-12*arm_length_2*arm_length_2):
-            return Status.UNREACHABLE
+            missing = 0.5*abs(arm_length_2 - span_2_y) + 0.5*abs(arm_length_2 + span_2_y) - arm_length_2
+            return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         flange_x = x - point_x  # the flange behind the point
         span_1_x = flange_x - tcp_offset_1  # rod 1
         a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
@@ -613,7 +627,10 @@ class P2XType1(OffsetKinematics):
         type2_arms_aligned = assembly_sign*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(arm_length_1*arm_length_2)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_arms_aligned
+            return Diagnosis(
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+            )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
@@ -683,12 +700,6 @@ class P2XType1(OffsetKinematics):
     @property
     def _criteria(self) -> tuple[Criterion, ...]:
         return (Criterion(self.DISTANCE_AXES, self._constants.tie),)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.p2x_type1 import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -27,7 +27,6 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
@@ -37,8 +36,6 @@ from softkin._types import Axis, Diagnosis, Matrix, Parameter, PlainFrame, Reals
 from softkin._unrolled.p2x_type2 import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -280,7 +277,7 @@ class P2XType2(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self._constants
@@ -293,18 +290,23 @@ class P2XType2(OffsetKinematics):
         span_1_x = k.span_1_x
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
         if not (root_square_a2 >= -2.5e-13*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = 0.5*abs(arm_length - y) + 0.5*abs(arm_length + y) - arm_length
+            return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign*y/arm_length
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_flat
+            return Diagnosis(
+                Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing,
+            )
         middle_a2 = span_1_x + x
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         a1 = 2.0*x - a2  # a1: affine in the x equation
@@ -312,8 +314,8 @@ class P2XType2(OffsetKinematics):
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -321,12 +323,20 @@ class P2XType2(OffsetKinematics):
         lowest_a1 = k.lowest_a1
         lowest_a2 = k.lowest_a2
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -400,7 +410,7 @@ class P2XType2(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -417,20 +427,25 @@ class P2XType2(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(point_z - z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_y = y - point_y  # the flange behind the point
         # a2: quadratic in the rod 1 (through x) equation
         root_square_a2 = (arm_length + flange_y)*(arm_length - flange_y)
         # rod 1 (through x) cannot reach
         if not (root_square_a2 >= -2.5e-13*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = 0.5*abs(arm_length - flange_y) + 0.5*abs(arm_length + flange_y) - arm_length
+            return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign*flange_y/arm_length
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_flat
+            return Diagnosis(
+                Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing,
+            )
         flange_x = x - point_x  # the flange behind the point
         middle_a2 = flange_x + span_1_x
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
@@ -476,12 +491,6 @@ class P2XType2(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.p2x_type2 import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -25,7 +25,6 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
@@ -34,8 +33,6 @@ from softkin._types import Axis, Diagnosis, Matrix, Parameter, PlainFrame, Reals
 from softkin._unrolled.p2y import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -266,7 +263,7 @@ class P2Y(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self._constants
@@ -275,18 +272,19 @@ class P2Y(OffsetKinematics):
         offset_a2 = k.offset_a2
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         a1 = x + y  # a1, a2: affine in the x and y equations
         axis_a1 = a1 + offset_a1
         a2 = y - x
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -300,22 +298,38 @@ class P2Y(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
         value_x = 0.5*a1 - 0.5*a2  # X of the carriage
         # limits of X of the carriage
-        if not (value_x >= lowest_x and value_x <= highest_x):
-            return Status.UNREACHABLE
+        if not (value_x >= lowest_x):
+            missing = lowest_x - value_x
+            return Diagnosis(Status.UNREACHABLE, "X of the carriage: below its lower limit [u]", missing)
+        if not (value_x <= highest_x):
+            missing = value_x - highest_x
+            return Diagnosis(Status.UNREACHABLE, "X of the carriage: above its upper limit [u]", missing)
         value_y = 0.5*a1 + 0.5*a2  # Y of the carriage
         # limits of Y of the carriage
-        if not (value_y >= lowest_y and value_y <= highest_y):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (value_y >= lowest_y):
+            missing = lowest_y - value_y
+            return Diagnosis(Status.UNREACHABLE, "Y of the carriage: below its lower limit [u]", missing)
+        if not (value_y <= highest_y):
+            missing = value_y - highest_y
+            return Diagnosis(Status.UNREACHABLE, "Y of the carriage: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -339,7 +353,7 @@ class P2Y(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -352,10 +366,11 @@ class P2Y(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(point_z - z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         a1 = x + y - point_x - point_y  # a1, a2: affine in the x and y equations
         axis_a1 = a1 + offset_a1
         a2 = point_x + y - point_y - x
@@ -383,12 +398,6 @@ class P2Y(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.p2y import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -31,9 +31,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
@@ -41,8 +41,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.pcc import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -304,7 +302,7 @@ class PCC(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (sigma_elbow,) = signs
@@ -326,10 +324,11 @@ class PCC(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
         one_less_cos_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
@@ -338,7 +337,12 @@ class PCC(OffsetKinematics):
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
+                + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
+                - link_length_1 - link_length_2 - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
@@ -370,8 +374,8 @@ class PCC(OffsetKinematics):
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -383,18 +387,86 @@ class PCC(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         a1 = DEGREE*(axis_a1 - offset_a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
         value_elbow = (a2 - a1)/DEGREE  # the outer arm relative to the inner arm
         # limits of the outer arm relative to the inner arm
-        if not (value_elbow >= lowest_elbow and value_elbow <= highest_elbow):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (value_elbow >= lowest_elbow):
+            missing = lowest_elbow - value_elbow
+            if turn := turn_inside(
+                axis_a2,
+                max(lowest_a2, axis_a2 + lowest_elbow - value_elbow),
+                min(highest_a2, axis_a2 + highest_elbow - value_elbow),
+            ):
+                return Diagnosis(
+                    Status.UNREACHABLE,
+                    ("the outer arm relative to the inner arm: this turn of A2 is beyond a limit, name one inside [deg]"),
+                    missing,
+                    turn,
+                )
+            if turn := turn_inside(
+                axis_a1,
+                max(lowest_a1, axis_a1 + value_elbow - highest_elbow),
+                min(highest_a1, axis_a1 + value_elbow - lowest_elbow),
+            ):
+                return Diagnosis(
+                    Status.UNREACHABLE,
+                    ("the outer arm relative to the inner arm: this turn of A1 is beyond a limit, name one inside [deg]"),
+                    missing,
+                    turn,
+                )
+            return Diagnosis(
+                Status.UNREACHABLE, "the outer arm relative to the inner arm: below its lower limit [deg]", missing,
+            )
+        if not (value_elbow <= highest_elbow):
+            missing = value_elbow - highest_elbow
+            if turn := turn_inside(
+                axis_a2,
+                max(lowest_a2, axis_a2 + lowest_elbow - value_elbow),
+                min(highest_a2, axis_a2 + highest_elbow - value_elbow),
+            ):
+                return Diagnosis(
+                    Status.UNREACHABLE,
+                    ("the outer arm relative to the inner arm: this turn of A2 is beyond a limit, name one inside [deg]"),
+                    missing,
+                    turn,
+                )
+            if turn := turn_inside(
+                axis_a1,
+                max(lowest_a1, axis_a1 + value_elbow - highest_elbow),
+                min(highest_a1, axis_a1 + value_elbow - lowest_elbow),
+            ):
+                return Diagnosis(
+                    Status.UNREACHABLE,
+                    ("the outer arm relative to the inner arm: this turn of A1 is beyond a limit, name one inside [deg]"),
+                    missing,
+                    turn,
+                )
+            return Diagnosis(
+                Status.UNREACHABLE, "the outer arm relative to the inner arm: above its upper limit [deg]", missing,
+            )
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -435,7 +507,7 @@ class PCC(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -458,10 +530,11 @@ class PCC(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(point_z - z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_x = x - point_x  # the flange behind the point
         flange_y = y - point_y  # the flange behind the point
         reach = sqrt(flange_x*flange_x + flange_y*flange_y)
@@ -472,7 +545,12 @@ class PCC(OffsetKinematics):
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
+                + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
+                - link_length_1 - link_length_2 - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
@@ -531,12 +609,6 @@ class PCC(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.pcc import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -30,17 +30,15 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.polar import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -231,7 +229,7 @@ class Polar(Mechanism):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (turn_c,) = turns
@@ -244,10 +242,11 @@ class Polar(Mechanism):
         single_c = k.single_c
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
         if radius_c > 1e-11*machine_scale:
@@ -265,8 +264,8 @@ class Polar(Mechanism):
         axis_r = offset_r + radius_c
         return (axis_c, axis_r)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_c, axis_r = axes
         k = self._constants
         highest_c = k.highest_c
@@ -274,12 +273,24 @@ class Polar(Mechanism):
         lowest_c = k.lowest_c
         lowest_r = k.lowest_r
         # limits of C
-        if not (axis_c >= lowest_c and axis_c <= highest_c):
-            return Status.UNREACHABLE
+        if not (axis_c >= lowest_c):
+            missing = lowest_c - axis_c
+            if turn := turn_inside(axis_c, lowest_c, highest_c):
+                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "C: below its lower limit [deg]", missing)
+        if not (axis_c <= highest_c):
+            missing = axis_c - highest_c
+            if turn := turn_inside(axis_c, lowest_c, highest_c):
+                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "C: above its upper limit [deg]", missing)
         # limits of R
-        if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_r >= lowest_r):
+            missing = lowest_r - axis_r
+            return Diagnosis(Status.UNREACHABLE, "R: below its lower limit [u]", missing)
+        if not (axis_r <= highest_r):
+            missing = axis_r - highest_r
+            return Diagnosis(Status.UNREACHABLE, "R: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -358,12 +369,6 @@ class Polar(Mechanism):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.polar import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -31,17 +31,15 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.polar_z import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -277,7 +275,7 @@ class PolarZ(Mechanism):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (turn_c,) = turns
@@ -291,7 +289,7 @@ class PolarZ(Mechanism):
         single_c = k.single_c
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
         if radius_c > 1e-11*machine_scale:
@@ -310,8 +308,8 @@ class PolarZ(Mechanism):
         axis_z = offset_z + z
         return (axis_c, axis_r, axis_z)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_c, axis_r, axis_z = axes
         k = self._constants
         highest_c = k.highest_c
@@ -321,15 +319,31 @@ class PolarZ(Mechanism):
         lowest_r = k.lowest_r
         lowest_z = k.lowest_z
         # limits of C
-        if not (axis_c >= lowest_c and axis_c <= highest_c):
-            return Status.UNREACHABLE
+        if not (axis_c >= lowest_c):
+            missing = lowest_c - axis_c
+            if turn := turn_inside(axis_c, lowest_c, highest_c):
+                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "C: below its lower limit [deg]", missing)
+        if not (axis_c <= highest_c):
+            missing = axis_c - highest_c
+            if turn := turn_inside(axis_c, lowest_c, highest_c):
+                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "C: above its upper limit [deg]", missing)
         # limits of R
-        if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return Status.UNREACHABLE
+        if not (axis_r >= lowest_r):
+            missing = lowest_r - axis_r
+            return Diagnosis(Status.UNREACHABLE, "R: below its lower limit [u]", missing)
+        if not (axis_r <= highest_r):
+            missing = axis_r - highest_r
+            return Diagnosis(Status.UNREACHABLE, "R: above its upper limit [u]", missing)
         # limits of Z
-        if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_z >= lowest_z):
+            missing = lowest_z - axis_z
+            return Diagnosis(Status.UNREACHABLE, "Z: below its lower limit [u]", missing)
+        if not (axis_z <= highest_z):
+            missing = axis_z - highest_z
+            return Diagnosis(Status.UNREACHABLE, "Z: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -415,12 +429,6 @@ class PolarZ(Mechanism):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.polar_z import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

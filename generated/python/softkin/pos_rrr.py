@@ -32,9 +32,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
@@ -42,8 +42,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.pos_rrr import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -401,7 +399,7 @@ class PosRRR(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_arm, sigma_elbow = signs
@@ -433,12 +431,13 @@ class PosRRR(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
         if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
-            return Status.UNREACHABLE
+            missing = 0.5*abs(d3 - distance_q1) + 0.5*abs(d3 + distance_q1) - distance_q1
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
@@ -499,7 +498,12 @@ class PosRRR(OffsetKinematics):
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12*swing_scale_q3_2*swing_scale_q3_2):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(effective_q3_2 + reach - a2) + 0.5*abs(a2 + reach - effective_q3_2)
+                + 0.5*abs(a2 + effective_q3_2 - reach) + 0.5*abs(a2 + effective_q3_2 + reach) - a2 - effective_q3_2
+                - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # turned within rounding, where the rest can be reached
         if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
             cos_q1 = cos_q1_before_q1_for_q3
@@ -550,8 +554,8 @@ class PosRRR(OffsetKinematics):
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -561,15 +565,39 @@ class PosRRR(OffsetKinematics):
         lowest_a2 = k.lowest_a2
         lowest_a3 = k.lowest_a3
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a3 >= lowest_a3):
+            missing = lowest_a3 - axis_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
+        if not (axis_a3 <= highest_a3):
+            missing = axis_a3 - highest_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -713,7 +741,7 @@ class PosRRR(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -744,19 +772,20 @@ class PosRRR(OffsetKinematics):
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
             and -1e9 <= ref_a3 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         tool_z = d3 + point_y  # the point seen from the last moving joint
         ahead_squared_q1 = (distance_q1 + tool_z)*(distance_q1 - tool_z)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
         if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
-            return Status.UNREACHABLE
+            missing = 0.5*abs(distance_q1 - tool_z) + 0.5*abs(distance_q1 + tool_z) - distance_q1
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         tool_x = a3 + point_x  # the point seen from the last moving joint
         tool_y = -d4 - point_z  # the point seen from the last moving joint
         effective_q3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # q3: its effective length is too short
         if not (effective_q3 > 1e-9*a2):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         divisor_q3 = effective_q3 if effective_q3 > 1e-9*a2 else 1.0
         swing_scale_q3 = 2.0*a2*divisor_q3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         wrist_y_from_q1 = z - d1  # what the unknown links must span
@@ -820,7 +849,11 @@ class PosRRR(OffsetKinematics):
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(divisor_q3 + reach - a2) + 0.5*abs(a2 + reach - divisor_q3) + 0.5*abs(a2 + divisor_q3 - reach)
+                + 0.5*abs(a2 + divisor_q3 + reach) - a2 - divisor_q3 - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # turned within rounding, where the rest can be reached
         if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
             cos_q1 = cos_q1_before_q1_for_q3
@@ -938,12 +971,6 @@ class PosRRR(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference) or super()._every_branch(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.pos_rrr import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -29,9 +29,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
@@ -39,8 +39,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.scara2_z import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -306,7 +304,7 @@ class Scara2Z(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (sigma_elbow,) = signs
@@ -329,7 +327,7 @@ class Scara2Z(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
         one_less_cos_a2 = (arm_length_1 + arm_length_2 + reach)*(arm_length_1 + arm_length_2 - reach)
@@ -338,7 +336,12 @@ class Scara2Z(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*scale_a2*scale_a2):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(arm_length_2 + reach - arm_length_1) + 0.5*abs(arm_length_1 + reach - arm_length_2)
+                + 0.5*abs(arm_length_1 + arm_length_2 - reach) + 0.5*abs(arm_length_1 + arm_length_2 + reach)
+                - arm_length_1 - arm_length_2 - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -366,8 +369,8 @@ class Scara2Z(OffsetKinematics):
         axis_z = offset_z + z
         return (axis_a1, axis_a2, axis_z)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_z = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -377,15 +380,35 @@ class Scara2Z(OffsetKinematics):
         lowest_a2 = k.lowest_a2
         lowest_z = k.lowest_z
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         # limits of Z
-        if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_z >= lowest_z):
+            missing = lowest_z - axis_z
+            return Diagnosis(Status.UNREACHABLE, "Z: below its lower limit [u]", missing)
+        if not (axis_z <= highest_z):
+            missing = axis_z - highest_z
+            return Diagnosis(Status.UNREACHABLE, "Z: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -454,7 +477,7 @@ class Scara2Z(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -477,12 +500,12 @@ class Scara2Z(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         tool_x = arm_length_2 + point_x  # the point seen from the last moving joint
         effective_a2 = sqrt(point_y*point_y + tool_x*tool_x)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > 1e-9*arm_length_1):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*arm_length_1 else 1.0
         swing_scale_a2 = 2.0*arm_length_1*divisor_a2  # a2: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
@@ -493,7 +516,12 @@ class Scara2Z(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(divisor_a2 + reach - arm_length_1) + 0.5*abs(arm_length_1 + reach - divisor_a2)
+                + 0.5*abs(arm_length_1 + divisor_a2 - reach) + 0.5*abs(arm_length_1 + divisor_a2 + reach) - arm_length_1
+                - divisor_a2 - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -558,12 +586,6 @@ class Scara2Z(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.scara2_z import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

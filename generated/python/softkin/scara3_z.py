@@ -33,9 +33,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
@@ -43,8 +43,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.scara3_z import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -379,7 +377,7 @@ class Scara3Z(TwistChoice):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
@@ -407,13 +405,13 @@ class Scara3Z(TwistChoice):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
         wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
@@ -427,7 +425,12 @@ class Scara3Z(TwistChoice):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*scale_a2*scale_a2):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(arm_length_2 + reach - arm_length_1) + 0.5*abs(arm_length_1 + reach - arm_length_2)
+                + 0.5*abs(arm_length_1 + arm_length_2 - reach) + 0.5*abs(arm_length_1 + arm_length_2 + reach)
+                - arm_length_1 - arm_length_2 - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -464,8 +467,8 @@ class Scara3Z(TwistChoice):
         axis_z = offset_z + z
         return (axis_a1, axis_a2, axis_a3, axis_z)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3, axis_z = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -477,18 +480,46 @@ class Scara3Z(TwistChoice):
         lowest_a3 = k.lowest_a3
         lowest_z = k.lowest_z
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
+        if not (axis_a3 >= lowest_a3):
+            missing = lowest_a3 - axis_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
+        if not (axis_a3 <= highest_a3):
+            missing = axis_a3 - highest_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
         # limits of Z
-        if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_z >= lowest_z):
+            missing = lowest_z - axis_z
+            return Diagnosis(Status.UNREACHABLE, "Z: below its lower limit [u]", missing)
+        if not (axis_z <= highest_z):
+            missing = axis_z - highest_z
+            return Diagnosis(Status.UNREACHABLE, "Z: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -611,12 +642,6 @@ class Scara3Z(TwistChoice):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.scara3_z import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

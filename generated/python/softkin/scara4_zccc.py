@@ -36,9 +36,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
@@ -47,8 +47,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.scara4_zccc import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -383,7 +381,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
@@ -411,13 +409,13 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a2 <= 1e9
             and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
@@ -431,7 +429,12 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*scale_a3*scale_a3):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
+                + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
+                - link_length_1 - link_length_2 - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         axis_a1 = offset_a1 + z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
@@ -468,8 +471,8 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             axis_a4 = nearest_period(axis_a4, near_a4)
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -481,18 +484,46 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         lowest_a3 = k.lowest_a3
         lowest_a4 = k.lowest_a4
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
+        if not (axis_a3 >= lowest_a3):
+            missing = lowest_a3 - axis_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
+        if not (axis_a3 <= highest_a3):
+            missing = axis_a3 - highest_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
         # limits of A4
-        if not (axis_a4 >= lowest_a4 and axis_a4 <= highest_a4):
-            return Status.UNREACHABLE
+        if not (axis_a4 >= lowest_a4):
+            missing = lowest_a4 - axis_a4
+            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
+                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A4: below its lower limit [deg]", missing)
+        if not (axis_a4 <= highest_a4):
+            missing = axis_a4 - highest_a4
+            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
+                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A4: above its upper limit [deg]", missing)
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -604,7 +635,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -630,7 +661,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
             and -1e9 <= ref_a4 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         free_a4 = (ref_a4 - offset_a4)*DEGREE
         cos_a4 = cos(free_a4)
         sin_a4 = sin(free_a4)
@@ -640,7 +671,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         effective_a3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > 1e-9*link_length_1):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*link_length_1 else 1.0
         swing_scale_a3 = 2.0*divisor_a3*link_length_1  # a3: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
@@ -651,7 +682,12 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(link_length_1 + reach - divisor_a3) + 0.5*abs(divisor_a3 + reach - link_length_1)
+                + 0.5*abs(divisor_a3 + link_length_1 - reach) + 0.5*abs(divisor_a3 + link_length_1 + reach) - divisor_a3
+                - link_length_1 - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         a1 = z - point_z  # a1: affine in the z equation
         axis_a1 = a1 + offset_a1
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
@@ -723,12 +759,6 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.scara4_zccc import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -38,9 +38,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
@@ -49,8 +49,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.sccc import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -453,7 +451,7 @@ class SCCC(OffsetKinematics, TwistChoice):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
@@ -483,16 +481,17 @@ class SCCC(OffsetKinematics, TwistChoice):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
@@ -506,7 +505,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*scale_a2*scale_a2):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
+                + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
+                - link_length_1 - link_length_2 - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -565,8 +569,8 @@ class SCCC(OffsetKinematics, TwistChoice):
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         coupling_12 = k.coupling_12
@@ -586,28 +590,92 @@ class SCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
+        if not (axis_a3 >= lowest_a3):
+            missing = lowest_a3 - axis_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
+        if not (axis_a3 <= highest_a3):
+            missing = axis_a3 - highest_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
         a1 = DEGREE*(axis_a1 - offset_a1)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         a2 = motor_a2 + a1*coupling_12
         value_joint_2 = a2/DEGREE  # joint 2
         # limits of joint 2
-        if not (value_joint_2 >= lowest_joint_2 and value_joint_2 <= highest_joint_2):
-            return Status.UNREACHABLE
+        if not (value_joint_2 >= lowest_joint_2):
+            missing = lowest_joint_2 - value_joint_2
+            if turn := turn_inside(
+                axis_a2,
+                max(lowest_a2, axis_a2 + lowest_joint_2 - value_joint_2),
+                min(highest_a2, axis_a2 + highest_joint_2 - value_joint_2),
+            ):
+                return Diagnosis(
+                    Status.UNREACHABLE, "joint 2: this turn of A2 is beyond a limit, name one inside [deg]", missing, turn,
+                )
+            return Diagnosis(Status.UNREACHABLE, "joint 2: below its lower limit [deg]", missing)
+        if not (value_joint_2 <= highest_joint_2):
+            missing = value_joint_2 - highest_joint_2
+            if turn := turn_inside(
+                axis_a2,
+                max(lowest_a2, axis_a2 + lowest_joint_2 - value_joint_2),
+                min(highest_a2, axis_a2 + highest_joint_2 - value_joint_2),
+            ):
+                return Diagnosis(
+                    Status.UNREACHABLE, "joint 2: this turn of A2 is beyond a limit, name one inside [deg]", missing, turn,
+                )
+            return Diagnosis(Status.UNREACHABLE, "joint 2: above its upper limit [deg]", missing)
         motor_a3 = DEGREE*(axis_a3 - offset_a3)
         a3 = motor_a3 + a1*coupling_13 + coupling_23*motor_a2
         value_joint_3 = a3/DEGREE  # joint 3
         # limits of joint 3
-        if not (value_joint_3 >= lowest_joint_3 and value_joint_3 <= highest_joint_3):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (value_joint_3 >= lowest_joint_3):
+            missing = lowest_joint_3 - value_joint_3
+            if turn := turn_inside(
+                axis_a3,
+                max(lowest_a3, axis_a3 + lowest_joint_3 - value_joint_3),
+                min(highest_a3, axis_a3 + highest_joint_3 - value_joint_3),
+            ):
+                return Diagnosis(
+                    Status.UNREACHABLE, "joint 3: this turn of A3 is beyond a limit, name one inside [deg]", missing, turn,
+                )
+            return Diagnosis(Status.UNREACHABLE, "joint 3: below its lower limit [deg]", missing)
+        if not (value_joint_3 <= highest_joint_3):
+            missing = value_joint_3 - highest_joint_3
+            if turn := turn_inside(
+                axis_a3,
+                max(lowest_a3, axis_a3 + lowest_joint_3 - value_joint_3),
+                min(highest_a3, axis_a3 + highest_joint_3 - value_joint_3),
+            ):
+                return Diagnosis(
+                    Status.UNREACHABLE, "joint 3: this turn of A3 is beyond a limit, name one inside [deg]", missing, turn,
+                )
+            return Diagnosis(Status.UNREACHABLE, "joint 3: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -746,7 +814,7 @@ class SCCC(OffsetKinematics, TwistChoice):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -774,10 +842,11 @@ class SCCC(OffsetKinematics, TwistChoice):
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
             and -1e9 <= ref_a3 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
-            return Status.UNREACHABLE
+            missing = abs(point_z - z) - 1e-6*machine_scale
+            return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
         ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
@@ -790,7 +859,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > 1e-9*link_length_1):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_1 else 1.0
         swing_scale_a2 = 2.0*divisor_a2*link_length_1  # a2: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
@@ -801,7 +870,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return Status.UNREACHABLE
+            missing = (
+                0.5*abs(link_length_1 + reach - divisor_a2) + 0.5*abs(divisor_a2 + reach - link_length_1)
+                + 0.5*abs(divisor_a2 + link_length_1 - reach) + 0.5*abs(divisor_a2 + link_length_1 + reach) - divisor_a2
+                - link_length_1 - reach
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -885,12 +959,6 @@ class SCCC(OffsetKinematics, TwistChoice):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.sccc import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

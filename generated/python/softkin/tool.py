@@ -24,7 +24,6 @@ Verified at 6 poses, before it was written, by a witness that knows the closure 
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
@@ -34,8 +33,6 @@ from softkin._types import Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rota
 from softkin._unrolled.tool import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import OrientationPrograms
 
 
@@ -132,13 +129,13 @@ class Tool(OrientationKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         return ()
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
-        return Status.OK
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -171,6 +168,7 @@ class Tool(OrientationKinematics):
             + (tool_y - flange_along*flange_axis_y)*(tool_y - flange_along*flange_axis_y)
             + (tool_z - flange_along*flange_axis_z)*(tool_z - flange_along*flange_axis_z)
         )
+        # a part of the end point turns with the flange
         if not (flange_offset <= unnoticed_shift):
             return Status.INVALID_COUPLING
         return Status.OK
@@ -224,12 +222,6 @@ class Tool(OrientationKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.tool import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

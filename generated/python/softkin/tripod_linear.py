@@ -33,19 +33,16 @@ Verified at 120 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._configuration import Criterion
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, cos, root, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.tripod_linear import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -486,7 +483,7 @@ class TripodLinear(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
@@ -504,7 +501,7 @@ class TripodLinear(OffsetKinematics):
         sin_rail_angle = k.sin_rail_angle
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = outer_radius + x - inner_radius  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
@@ -513,7 +510,14 @@ class TripodLinear(OffsetKinematics):
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length
+                - root(
+                    span_1_x*span_1_x + y*y + z*z - z*z*cos_rail_angle*cos_rail_angle
+                    - 2.0*span_1_x*z*cos_rail_angle*sin_rail_angle - span_1_x*span_1_x*sin_rail_angle*sin_rail_angle
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_x = 0.5*inner_radius + x - 0.5*outer_radius  # rod 2
         span_2_y = y + 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*inner_radius  # rod 2
         # a2: quadratic in the rod 2 equation
@@ -526,7 +530,17 @@ class TripodLinear(OffsetKinematics):
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length
+                - root(
+                    span_2_x*span_2_x + span_2_y*span_2_y + z*z + span_2_x*z*cos_rail_angle*sin_rail_angle
+                    + 0.5*root(3.0)*span_2_x*span_2_y*sin_rail_angle*sin_rail_angle - z*z*cos_rail_angle*cos_rail_angle
+                    - 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
+                    - 0.75*span_2_y*span_2_y*sin_rail_angle*sin_rail_angle
+                    - root(3.0)*span_2_y*z*cos_rail_angle*sin_rail_angle
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_3_y = y + 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
@@ -538,7 +552,17 @@ class TripodLinear(OffsetKinematics):
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length
+                - root(
+                    span_2_x*span_2_x + span_3_y*span_3_y + z*z + span_2_x*z*cos_rail_angle*sin_rail_angle
+                    + root(3.0)*span_3_y*z*cos_rail_angle*sin_rail_angle - z*z*cos_rail_angle*cos_rail_angle
+                    - 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
+                    - 0.75*span_3_y*span_3_y*sin_rail_angle*sin_rail_angle
+                    - 0.5*root(3.0)*span_2_x*span_3_y*sin_rail_angle*sin_rail_angle
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         middle_a1 = z*cos_rail_angle + span_1_x*sin_rail_angle
         a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
         pivot_1_x = inner_radius - outer_radius - a1*sin_rail_angle  # rod 1
@@ -571,23 +595,78 @@ class TripodLinear(OffsetKinematics):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_rods_coplanar
+            return Diagnosis(
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+            )
         # ball joint of rod 1
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(abs(y)/arm_length + 0.0, root(1.0 - y*y/(arm_length*arm_length)) + 0.0)
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
         # ball joint of rod 2
         if not (abs(0.5*y/arm_length + 0.5*root(3.0)*x/arm_length) <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(
+                        abs(0.5*y/arm_length + 0.5*root(3.0)*x/arm_length) + 0.0,
+                        (
+                            root(
+                                1.0
+                                - (
+                                    0.5*y/arm_length + 0.5*root(3.0)*x/arm_length
+                                )*(0.5*y/arm_length + 0.5*root(3.0)*x/arm_length)
+                            )
+                            + 0.0
+                        ),
+                    )
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(0.5*root(3.0)*x/arm_length - 0.5*y/arm_length) <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(
+                        abs(0.5*root(3.0)*x/arm_length - 0.5*y/arm_length) + 0.0,
+                        (
+                            root(
+                                1.0
+                                - (
+                                    0.5*root(3.0)*x/arm_length - 0.5*y/arm_length
+                                )*(0.5*root(3.0)*x/arm_length - 0.5*y/arm_length)
+                            )
+                            + 0.0
+                        ),
+                    )
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -597,15 +676,27 @@ class TripodLinear(OffsetKinematics):
         lowest_a2 = k.lowest_a2
         lowest_a3 = k.lowest_a3
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
         # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a3 >= lowest_a3):
+            missing = lowest_a3 - axis_a3
+            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [u]", missing)
+        if not (axis_a3 <= highest_a3):
+            missing = axis_a3 - highest_a3
+            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -839,7 +930,7 @@ class TripodLinear(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -861,7 +952,7 @@ class TripodLinear(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_y = y - point_y  # the flange behind the point
         flange_z = z - point_z  # the flange behind the point
         flange_x = x - point_x  # the flange behind the point
@@ -874,7 +965,16 @@ class TripodLinear(OffsetKinematics):
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length
+                - root(
+                    flange_y*flange_y + flange_z*flange_z + span_1_x*span_1_x
+                    - flange_z*flange_z*cos_rail_angle*cos_rail_angle
+                    - 2.0*flange_z*span_1_x*cos_rail_angle*sin_rail_angle
+                    - span_1_x*span_1_x*sin_rail_angle*sin_rail_angle
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_x = flange_x + 0.5*inner_radius - 0.5*outer_radius  # rod 2
         span_2_y = flange_y + 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*inner_radius  # rod 2
         # a2: quadratic in the rod 2 equation
@@ -888,7 +988,19 @@ class TripodLinear(OffsetKinematics):
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length
+                - root(
+                    flange_z*flange_z + span_2_x*span_2_x + span_2_y*span_2_y
+                    + flange_z*span_2_x*cos_rail_angle*sin_rail_angle
+                    + 0.5*root(3.0)*span_2_x*span_2_y*sin_rail_angle*sin_rail_angle
+                    - flange_z*flange_z*cos_rail_angle*cos_rail_angle
+                    - 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
+                    - 0.75*span_2_y*span_2_y*sin_rail_angle*sin_rail_angle
+                    - root(3.0)*flange_z*span_2_y*cos_rail_angle*sin_rail_angle
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_3_y = flange_y + 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
@@ -901,7 +1013,19 @@ class TripodLinear(OffsetKinematics):
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length
+                - root(
+                    flange_z*flange_z + span_2_x*span_2_x + span_3_y*span_3_y
+                    + flange_z*span_2_x*cos_rail_angle*sin_rail_angle
+                    + root(3.0)*flange_z*span_3_y*cos_rail_angle*sin_rail_angle
+                    - flange_z*flange_z*cos_rail_angle*cos_rail_angle
+                    - 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
+                    - 0.75*span_3_y*span_3_y*sin_rail_angle*sin_rail_angle
+                    - 0.5*root(3.0)*span_2_x*span_3_y*sin_rail_angle*sin_rail_angle
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         middle_a1 = flange_z*cos_rail_angle + span_1_x*sin_rail_angle
         a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
         pivot_1_x = inner_radius - outer_radius - a1*sin_rail_angle  # rod 1
@@ -933,16 +1057,71 @@ class TripodLinear(OffsetKinematics):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_rods_coplanar
+            return Diagnosis(
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+            )
         # ball joint of rod 1
         if not (abs(flange_y)/arm_length <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(abs(flange_y)/arm_length + 0.0, root(1.0 - flange_y*flange_y/(arm_length*arm_length)) + 0.0)
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
         # ball joint of rod 2
         if not (abs(0.5*flange_y/arm_length + 0.5*root(3.0)*flange_x/arm_length) <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(
+                        abs(0.5*flange_y/arm_length + 0.5*root(3.0)*flange_x/arm_length) + 0.0,
+                        (
+                            root(
+                                1.0
+                                - (
+                                    0.5*flange_y/arm_length + 0.5*root(3.0)*flange_x/arm_length
+                                )*(0.5*flange_y/arm_length + 0.5*root(3.0)*flange_x/arm_length)
+                            )
+                            + 0.0
+                        ),
+                    )
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(0.5*root(3.0)*flange_x/arm_length - 0.5*flange_y/arm_length) <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(
+                        abs(0.5*root(3.0)*flange_x/arm_length - 0.5*flange_y/arm_length) + 0.0,
+                        (
+                            root(
+                                1.0
+                                - (
+                                    0.5*root(3.0)*flange_x/arm_length - 0.5*flange_y/arm_length
+                                )*(0.5*root(3.0)*flange_x/arm_length - 0.5*flange_y/arm_length)
+                            )
+                            + 0.0
+                        ),
+                    )
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         axis_a3 = a3 + offset_a3
@@ -1048,12 +1227,6 @@ class TripodLinear(OffsetKinematics):
     @property
     def _criteria(self) -> tuple[Criterion, ...]:
         return (Criterion(self.DISTANCE_AXES, self._constants.tie),)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.tripod_linear import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

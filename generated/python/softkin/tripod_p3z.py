@@ -33,7 +33,6 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._configuration import Criterion
@@ -44,8 +43,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.tripod_p3z import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -546,7 +543,7 @@ class TripodP3Z(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
@@ -572,28 +569,31 @@ class TripodP3Z(OffsetKinematics):
         tcp_displacement = k.tcp_displacement
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
         span_1_y = y + rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
         # rod 1 cannot reach
         if not (root_square_a1 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(arm_length - sqrt(span_1_x*span_1_x + span_1_y*span_1_y))
+            return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_x = x + rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
         span_2_y = y + rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
         # rod 2 cannot reach
         if not (root_square_a2 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(arm_length - sqrt(span_2_x*span_2_x + span_2_y*span_2_y))
+            return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_3_x = x + rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
         span_3_y = y + rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
         # rod 3 cannot reach
         if not (root_square_a3 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(arm_length - sqrt(span_3_x*span_3_x + span_3_y*span_3_y))
+            return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         a1 = z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
@@ -616,14 +616,17 @@ class TripodP3Z(OffsetKinematics):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_rods_coplanar
+            return Diagnosis(
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+            )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -633,15 +636,27 @@ class TripodP3Z(OffsetKinematics):
         lowest_a2 = k.lowest_a2
         lowest_a3 = k.lowest_a3
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
         # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a3 >= lowest_a3):
+            missing = lowest_a3 - axis_a3
+            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [u]", missing)
+        if not (axis_a3 <= highest_a3):
+            missing = axis_a3 - highest_a3
+            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [u]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -846,7 +861,7 @@ class TripodP3Z(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -876,7 +891,7 @@ class TripodP3Z(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # the flange behind the point
         # rod 1
         span_1_x = flange_x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1
@@ -887,7 +902,8 @@ class TripodP3Z(OffsetKinematics):
         root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
         # rod 1 cannot reach
         if not (root_square_a1 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(arm_length - sqrt(span_1_x*span_1_x + span_1_y*span_1_y))
+            return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         # rod 2
         span_2_x = flange_x + rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2
         # rod 2
@@ -896,7 +912,8 @@ class TripodP3Z(OffsetKinematics):
         root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
         # rod 2 cannot reach
         if not (root_square_a2 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(arm_length - sqrt(span_2_x*span_2_x + span_2_y*span_2_y))
+            return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         # rod 3
         span_3_x = flange_x + rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3
         # rod 3
@@ -905,7 +922,8 @@ class TripodP3Z(OffsetKinematics):
         root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
         # rod 3 cannot reach
         if not (root_square_a3 >= -1e-12*arm_length*arm_length):
-            return Status.UNREACHABLE
+            missing = abs(arm_length - sqrt(span_3_x*span_3_x + span_3_y*span_3_y))
+            return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         rod_1_x = flange_x - pivot_1_x
         rod_1_y = flange_y - pivot_1_y
         flange_z = z - point_z  # the flange behind the point
@@ -929,7 +947,10 @@ class TripodP3Z(OffsetKinematics):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_rods_coplanar
+            return Diagnosis(
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+            )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         axis_a3 = a3 + offset_a3
@@ -1013,12 +1034,6 @@ class TripodP3Z(OffsetKinematics):
     @property
     def _criteria(self) -> tuple[Criterion, ...]:
         return (Criterion(self.DISTANCE_AXES, self._constants.tie),)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.tripod_p3z import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

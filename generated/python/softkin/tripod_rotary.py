@@ -36,9 +36,9 @@ Verified at 120 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
@@ -46,8 +46,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.tripod_rotary import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import Programs
 
 
@@ -550,7 +548,7 @@ class TripodRotary(OffsetKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
@@ -579,13 +577,13 @@ class TripodRotary(OffsetKinematics):
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = arm_1_radius + x - fixed_length_1  # rod 1
         span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > 1e-9*arm_length_1):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
         # cosine times the scale, seen from the origin
@@ -598,7 +596,21 @@ class TripodRotary(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
+                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
+                    - 0.5*abs(
+                        (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
+                    )
+                    - (arm_length_2 + y)*(arm_length_2 - y)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
         span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
@@ -606,7 +618,7 @@ class TripodRotary(OffsetKinematics):
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > 5e-10*arm_length_1):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # cosine times the scale, seen from the origin
@@ -621,13 +633,35 @@ class TripodRotary(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                        + (
+                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                    + (
+                        0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                    )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                    - 0.5*abs(
+                        (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                        + (
+                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                    )
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > 5e-10*arm_length_1):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
@@ -642,7 +676,29 @@ class TripodRotary(OffsetKinematics):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
+                        - (
+                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
+                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
+                    - 0.5*abs(
+                        (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
+                        - (
+                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    )
+                    - (
+                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
@@ -689,16 +745,71 @@ class TripodRotary(OffsetKinematics):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_rods_coplanar
+            return Diagnosis(
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+            )
         # ball joint of rod 1
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(abs(y)/arm_length_2 + 0.0, root(1.0 - y*y/(arm_length_2*arm_length_2)) + 0.0)
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
         # ball joint of rod 2
         if not (abs(0.5*y/arm_length_2 + 0.5*root(3.0)*x/arm_length_2) <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(
+                        abs(0.5*y/arm_length_2 + 0.5*root(3.0)*x/arm_length_2) + 0.0,
+                        (
+                            root(
+                                1.0
+                                - (
+                                    0.5*y/arm_length_2 + 0.5*root(3.0)*x/arm_length_2
+                                )*(0.5*y/arm_length_2 + 0.5*root(3.0)*x/arm_length_2)
+                            )
+                            + 0.0
+                        ),
+                    )
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2) <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(
+                        abs(0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2) + 0.0,
+                        (
+                            root(
+                                1.0
+                                - (
+                                    0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2
+                                )*(0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2)
+                            )
+                            + 0.0
+                        ),
+                    )
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
@@ -716,8 +827,8 @@ class TripodRotary(OffsetKinematics):
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -727,15 +838,39 @@ class TripodRotary(OffsetKinematics):
         lowest_a2 = k.lowest_a2
         lowest_a3 = k.lowest_a3
         # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
+        if not (axis_a1 >= lowest_a1):
+            missing = lowest_a1 - axis_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
+        if not (axis_a1 <= highest_a1):
+            missing = axis_a1 - highest_a1
+            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
         # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
+        if not (axis_a2 >= lowest_a2):
+            missing = lowest_a2 - axis_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
+        if not (axis_a2 <= highest_a2):
+            missing = axis_a2 - highest_a2
+            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_a3 >= lowest_a3):
+            missing = lowest_a3 - axis_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
+        if not (axis_a3 <= highest_a3):
+            missing = axis_a3 - highest_a3
+            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -980,7 +1115,7 @@ class TripodRotary(OffsetKinematics):
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
@@ -1011,7 +1146,7 @@ class TripodRotary(OffsetKinematics):
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
             and -1e9 <= ref_a3 <= 1e9
         ):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # the flange behind the point
         span_1_x = arm_1_radius + flange_x - fixed_length_1  # rod 1
         flange_z = z - point_z  # the flange behind the point
@@ -1019,7 +1154,7 @@ class TripodRotary(OffsetKinematics):
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > 1e-9*arm_length_1):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
         flange_y = y - point_y  # the flange behind the point
@@ -1033,7 +1168,23 @@ class TripodRotary(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
+                        - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
+                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
+                    - 0.5*abs(
+                        (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
+                        - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
+                    )
+                    - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = 0.5*fixed_length_1 + flange_x - 0.5*arm_1_radius  # rod 2
         span_2_y = flange_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
@@ -1041,7 +1192,7 @@ class TripodRotary(OffsetKinematics):
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > 5e-10*arm_length_1):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # cosine times the scale, seen from the origin
@@ -1056,13 +1207,35 @@ class TripodRotary(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                        + (
+                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                    + (
+                        0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                    )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                    - 0.5*abs(
+                        (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                        + (
+                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                    )
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_y = flange_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > 5e-10*arm_length_1):
-            return Status.UNREACHABLE
+            return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
@@ -1077,7 +1250,29 @@ class TripodRotary(OffsetKinematics):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-            return Status.UNREACHABLE
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
+                        - (
+                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
+                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
+                    - 0.5*abs(
+                        (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
+                        - (
+                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    )
+                    - (
+                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
@@ -1123,16 +1318,73 @@ class TripodRotary(OffsetKinematics):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
-            return Status.UNREACHABLE
+            missing = min_type2_margin - type2_rods_coplanar
+            return Diagnosis(
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+            )
         # ball joint of rod 1
         if not (abs(flange_y)/arm_length_2 <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(
+                        abs(flange_y)/arm_length_2 + 0.0, root(1.0 - flange_y*flange_y/(arm_length_2*arm_length_2)) + 0.0,
+                    )
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
         # ball joint of rod 2
         if not (abs(0.5*flange_y/arm_length_2 + 0.5*root(3.0)*flange_x/arm_length_2) <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(
+                        abs(0.5*flange_y/arm_length_2 + 0.5*root(3.0)*flange_x/arm_length_2) + 0.0,
+                        (
+                            root(
+                                1.0
+                                - (
+                                    0.5*flange_y/arm_length_2 + 0.5*root(3.0)*flange_x/arm_length_2
+                                )*(0.5*flange_y/arm_length_2 + 0.5*root(3.0)*flange_x/arm_length_2)
+                            )
+                            + 0.0
+                        ),
+                    )
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(0.5*root(3.0)*flange_x/arm_length_2 - 0.5*flange_y/arm_length_2) <= sin_max_angle_ball_joint):
-            return Status.UNREACHABLE
+            missing = (
+                (
+                    arctan2(
+                        abs(0.5*root(3.0)*flange_x/arm_length_2 - 0.5*flange_y/arm_length_2) + 0.0,
+                        (
+                            root(
+                                1.0
+                                - (
+                                    0.5*root(3.0)*flange_x/arm_length_2 - 0.5*flange_y/arm_length_2
+                                )*(0.5*root(3.0)*flange_x/arm_length_2 - 0.5*flange_y/arm_length_2)
+                            )
+                            + 0.0
+                        ),
+                    )
+                    - arctan2(
+                        sin_max_angle_ball_joint + 0.0,
+                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
+                    )
+                )
+                /DEGREE
+            )
+            return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
@@ -1249,12 +1501,6 @@ class TripodRotary(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.tripod_rotary import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -29,9 +29,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
@@ -39,8 +39,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.wrist2 import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import OrientationPrograms
 
 
@@ -333,7 +331,7 @@ class Wrist2(OrientationKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         (sigma_roll,) = signs
@@ -349,7 +347,7 @@ class Wrist2(OrientationKinematics):
         tool_side = k.tool_side
         # numbers of reasonable size
         if not (-1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
@@ -374,8 +372,8 @@ class Wrist2(OrientationKinematics):
             axis_b = nearest_period(axis_b, near_b)
         return (axis_a, axis_b)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a, axis_b = axes
         k = self._constants
         highest_a = k.highest_a
@@ -383,12 +381,28 @@ class Wrist2(OrientationKinematics):
         lowest_a = k.lowest_a
         lowest_b = k.lowest_b
         # limits of A
-        if not (axis_a >= lowest_a and axis_a <= highest_a):
-            return Status.UNREACHABLE
+        if not (axis_a >= lowest_a):
+            missing = lowest_a - axis_a
+            if turn := turn_inside(axis_a, lowest_a, highest_a):
+                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A: below its lower limit [deg]", missing)
+        if not (axis_a <= highest_a):
+            missing = axis_a - highest_a
+            if turn := turn_inside(axis_a, lowest_a, highest_a):
+                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A: above its upper limit [deg]", missing)
         # limits of B
-        if not (axis_b >= lowest_b and axis_b <= highest_b):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_b >= lowest_b):
+            missing = lowest_b - axis_b
+            if turn := turn_inside(axis_b, lowest_b, highest_b):
+                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "B: below its lower limit [deg]", missing)
+        if not (axis_b <= highest_b):
+            missing = axis_b - highest_b
+            if turn := turn_inside(axis_b, lowest_b, highest_b):
+                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "B: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -485,6 +499,7 @@ class Wrist2(OrientationKinematics):
             + flange_along*flange_along*flange_axis_x*flange_axis_x
             + flange_along*flange_along*flange_axis_y*flange_axis_y
         )
+        # a part of the end point turns with the flange
         if not (
             flange_offset <= unnoticed_shift and wrist_offset <= unnoticed_shift and unmet_offset <= unnoticed_shift
         ):
@@ -526,12 +541,6 @@ class Wrist2(OrientationKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.wrist2 import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

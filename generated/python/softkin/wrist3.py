@@ -30,9 +30,9 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
@@ -40,8 +40,6 @@ from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter
 from softkin._unrolled.wrist3 import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from softkin._array import OrientationPrograms
 
 
@@ -357,7 +355,7 @@ class Wrist3(OrientationKinematics):
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
         (sigma_hand,) = signs
@@ -375,7 +373,7 @@ class Wrist3(OrientationKinematics):
         single_c = k.single_c
         # numbers of reasonable size
         if not (-1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9 and -1e9 <= ref_c <= 1e9):
-            return Status.BAD_INPUT
+            return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
         # c: polar angle in the r31 and r32 equations; its reference where it is free
         if radius_c > 1e-11:
@@ -405,8 +403,8 @@ class Wrist3(OrientationKinematics):
             axis_c = nearest_period(axis_c, near_c)
         return (axis_a, axis_b, axis_c)
 
-    def _limits(self, axes: Reals) -> Status:
-        """Whether the axes are inside their limits."""
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        """Which limit the axes are beyond."""
         axis_a, axis_b, axis_c = axes
         k = self._constants
         highest_a = k.highest_a
@@ -416,15 +414,39 @@ class Wrist3(OrientationKinematics):
         lowest_b = k.lowest_b
         lowest_c = k.lowest_c
         # limits of A
-        if not (axis_a >= lowest_a and axis_a <= highest_a):
-            return Status.UNREACHABLE
+        if not (axis_a >= lowest_a):
+            missing = lowest_a - axis_a
+            if turn := turn_inside(axis_a, lowest_a, highest_a):
+                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A: below its lower limit [deg]", missing)
+        if not (axis_a <= highest_a):
+            missing = axis_a - highest_a
+            if turn := turn_inside(axis_a, lowest_a, highest_a):
+                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "A: above its upper limit [deg]", missing)
         # limits of B
-        if not (axis_b >= lowest_b and axis_b <= highest_b):
-            return Status.UNREACHABLE
+        if not (axis_b >= lowest_b):
+            missing = lowest_b - axis_b
+            if turn := turn_inside(axis_b, lowest_b, highest_b):
+                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "B: below its lower limit [deg]", missing)
+        if not (axis_b <= highest_b):
+            missing = axis_b - highest_b
+            if turn := turn_inside(axis_b, lowest_b, highest_b):
+                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "B: above its upper limit [deg]", missing)
         # limits of C
-        if not (axis_c >= lowest_c and axis_c <= highest_c):
-            return Status.UNREACHABLE
-        return Status.OK
+        if not (axis_c >= lowest_c):
+            missing = lowest_c - axis_c
+            if turn := turn_inside(axis_c, lowest_c, highest_c):
+                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "C: below its lower limit [deg]", missing)
+        if not (axis_c <= highest_c):
+            missing = axis_c - highest_c
+            if turn := turn_inside(axis_c, lowest_c, highest_c):
+                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
+            return Diagnosis(Status.UNREACHABLE, "C: above its upper limit [deg]", missing)
+        return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
@@ -535,12 +557,6 @@ class Wrist3(OrientationKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
-
-    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
-        """The branch and the limits, with reasons."""
-        from softkin._diagnosis.wrist3 import branch, limits
-
-        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

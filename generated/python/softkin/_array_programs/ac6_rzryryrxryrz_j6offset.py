@@ -686,22 +686,6 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        require(
-            status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9) & (absolute(axis_a5) <= 1e9) & (absolute(axis_a6) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        require(
-            status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9) & (absolute(axis_a5) <= 1e9) & (absolute(axis_a6) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
         q1 = DEGREE*(axis_a1 - offset_a1)
         cos_q1 = cos(q1)
         q2 = DEGREE*(axis_a2 - offset_a2)
@@ -874,12 +858,12 @@ class ArrayPrograms(Programs):
         swing_scale_q3_tried = k.swing_scale_q3_tried
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(
             status,
             (
                 (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
                 & (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
+                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
             ),
             Status.BAD_INPUT,
         )
@@ -920,7 +904,7 @@ class ArrayPrograms(Programs):
             status,
         )
         found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
-        # A6: the search along it finds no root of this branch
+        # q6: the search along it finds no root of this branch
         require(status, (found_ > 0.5) | (searched < 0.5), Status.UNREACHABLE)
         q1: Real
         q2: Real
@@ -1072,7 +1056,7 @@ class ArrayPrograms(Programs):
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
         highest_a1 = k.highest_a1

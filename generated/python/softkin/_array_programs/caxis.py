@@ -73,7 +73,7 @@ class ArrayPrograms(OrientationPrograms):
         return (axis_c,), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         (axis_c,) = axes
         k = self.constants
         highest_c = k.highest_c

@@ -89,8 +89,14 @@ class ArrayPrograms(Programs):
         single_theta = k.single_theta
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(status, (absolute(ref_phi) <= 1e9) & (absolute(ref_theta) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(ref_phi) <= 1e9) & (absolute(ref_theta) <= 1e9) & (absolute(x) <= 1e9)
+                & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
@@ -136,7 +142,7 @@ class ArrayPrograms(Programs):
         return (axis_r, axis_theta, axis_phi), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_r, axis_theta, axis_phi = axes
         k = self.constants
         highest_phi = k.highest_phi

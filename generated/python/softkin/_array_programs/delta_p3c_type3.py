@@ -201,10 +201,12 @@ class ArrayPrograms(Programs):
         tcp_radius_3 = k.tcp_radius_3
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(
             status,
-            (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
+                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
+            ),
             Status.BAD_INPUT,
         )
         span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
@@ -343,7 +345,7 @@ class ArrayPrograms(Programs):
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
         highest_a1 = k.highest_a1
@@ -400,10 +402,12 @@ class ArrayPrograms(Programs):
         tcp_radius_3 = k.tcp_radius_3
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(
             status,
-            (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
+                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
+            ),
             Status.BAD_INPUT,
         )
         span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1

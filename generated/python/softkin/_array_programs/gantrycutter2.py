@@ -82,8 +82,11 @@ class ArrayPrograms(Programs):
         single_r = k.single_r
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(status, absolute(ref_r) <= 1e9, Status.BAD_INPUT)
+        require(
+            status,
+            (absolute(ref_r) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9),
+            Status.BAD_INPUT,
+        )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
@@ -100,7 +103,7 @@ class ArrayPrograms(Programs):
         return (axis_x, axis_y, axis_r), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_x, axis_y, axis_r = axes
         k = self.constants
         highest_r = k.highest_r

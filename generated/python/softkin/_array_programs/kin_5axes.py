@@ -105,8 +105,14 @@ class ArrayPrograms(Programs):
         tool_side = k.tool_side
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
+                & (absolute(z) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
         wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length*tool_side
@@ -142,7 +148,7 @@ class ArrayPrograms(Programs):
         return (axis_x, axis_y, axis_z, axis_a, axis_b), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self.constants
         highest_a = k.highest_a
@@ -190,8 +196,14 @@ class ArrayPrograms(Programs):
         tool_side = k.tool_side
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
+                & (absolute(z) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
         wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length*tool_side

@@ -114,8 +114,14 @@ class ArrayPrograms(Programs):
         tcp_link_distance = k.tcp_link_distance
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
+                & (absolute(z) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         span_1_x = displacement + x - 0.5*tcp_link_distance  # rod 1
@@ -184,7 +190,7 @@ class ArrayPrograms(Programs):
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2 = axes
         k = self.constants
         highest_a1 = k.highest_a1
@@ -221,8 +227,14 @@ class ArrayPrograms(Programs):
         tcp_link_distance = k.tcp_link_distance
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
+                & (absolute(z) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         span_1_x = displacement + x - 0.5*tcp_link_distance  # rod 1

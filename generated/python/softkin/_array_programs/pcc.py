@@ -82,8 +82,14 @@ class ArrayPrograms(Programs):
         single_a2 = k.single_a2
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
+                & (absolute(z) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
@@ -137,7 +143,7 @@ class ArrayPrograms(Programs):
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2 = axes
         k = self.constants
         highest_a1 = k.highest_a1
@@ -180,8 +186,14 @@ class ArrayPrograms(Programs):
         single_a2 = k.single_a2
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
+                & (absolute(z) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)

@@ -71,8 +71,11 @@ class ArrayPrograms(Programs):
         single_c = k.single_c
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
+        require(
+            status,
+            (absolute(ref_c) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9),
+            Status.BAD_INPUT,
+        )
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
@@ -98,7 +101,7 @@ class ArrayPrograms(Programs):
         return (axis_c, axis_r), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_c, axis_r = axes
         k = self.constants
         highest_c = k.highest_c

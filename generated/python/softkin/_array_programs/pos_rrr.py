@@ -132,10 +132,12 @@ class ArrayPrograms(Programs):
         swing_scale_q3_2 = k.swing_scale_q3_2
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(
             status,
-            (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
+                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
+            ),
             Status.BAD_INPUT,
         )
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
@@ -311,7 +313,7 @@ class ArrayPrograms(Programs):
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
         highest_a1 = k.highest_a1
@@ -359,10 +361,12 @@ class ArrayPrograms(Programs):
         swing_scale_q3_2 = k.swing_scale_q3_2
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(
             status,
-            (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
+                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
+            ),
             Status.BAD_INPUT,
         )
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis

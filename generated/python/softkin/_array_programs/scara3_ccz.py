@@ -89,8 +89,14 @@ class ArrayPrograms(Programs):
         single_a2 = k.single_a2
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
+                & (absolute(z) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
         one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
@@ -139,7 +145,7 @@ class ArrayPrograms(Programs):
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
         highest_a1 = k.highest_a1
@@ -178,8 +184,14 @@ class ArrayPrograms(Programs):
         single_a2 = k.single_a2
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
+                & (absolute(z) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
         one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)

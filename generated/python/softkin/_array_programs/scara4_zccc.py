@@ -105,10 +105,12 @@ class ArrayPrograms(Programs):
         single_a4 = k.single_a4
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(
             status,
-            (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9) & (absolute(ref_a4) <= 1e9),
+            (
+                (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9) & (absolute(ref_a4) <= 1e9)
+                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
+            ),
             Status.BAD_INPUT,
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
@@ -180,7 +182,7 @@ class ArrayPrograms(Programs):
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self.constants
         highest_a1 = k.highest_a1
@@ -228,10 +230,12 @@ class ArrayPrograms(Programs):
         single_a4 = k.single_a4
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(
             status,
-            (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9) & (absolute(ref_a4) <= 1e9),
+            (
+                (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9) & (absolute(ref_a4) <= 1e9)
+                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
+            ),
             Status.BAD_INPUT,
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept

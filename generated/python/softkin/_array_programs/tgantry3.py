@@ -60,7 +60,7 @@ class ArrayPrograms(Programs):
         return (axis_a, axis_b, axis_z), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_a, axis_b, axis_z = axes
         k = self.constants
         highest_a = k.highest_a

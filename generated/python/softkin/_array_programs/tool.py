@@ -36,7 +36,7 @@ class ArrayPrograms(OrientationPrograms):
         return (), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         status = passed(axes)
         return status
 

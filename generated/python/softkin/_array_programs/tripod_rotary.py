@@ -163,10 +163,12 @@ class ArrayPrograms(Programs):
         single_a3 = k.single_a3
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(
             status,
-            (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
+                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
+            ),
             Status.BAD_INPUT,
         )
         span_1_x = arm_1_radius + x - fixed_length_1  # rod 1
@@ -308,7 +310,7 @@ class ArrayPrograms(Programs):
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
         highest_a1 = k.highest_a1
@@ -353,10 +355,12 @@ class ArrayPrograms(Programs):
         single_a3 = k.single_a3
         status = passed(position)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(
             status,
-            (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
+                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
+            ),
             Status.BAD_INPUT,
         )
         span_1_x = arm_1_radius + x - fixed_length_1  # rod 1

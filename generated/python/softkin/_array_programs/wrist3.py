@@ -142,7 +142,7 @@ class ArrayPrograms(OrientationPrograms):
         return (axis_a, axis_b, axis_c), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Whether the axes are inside their limits."""
+        """Which limit the axes are beyond."""
         axis_a, axis_b, axis_c = axes
         k = self.constants
         highest_a = k.highest_a

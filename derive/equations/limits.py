@@ -1,0 +1,83 @@
+"""The test of the limits, and which axis may be inside them on another of its turns where they refuse it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.description.mechanism import Joint, Limited, Mechanism
+from derive.equations.axes import joint_lets
+from derive.equations.trigonometry import named_trigonometry
+from derive.ir.constants import DEGREE
+from derive.ir.passes import assemble
+from derive.ir.program import Let, Program, Require, Statement, Status
+from derive.ir.reason import OtherTurn, Reason, Unit, Why, about, about_joint
+from derive.ir.symbols import (
+    real,
+)
+
+
+def limits_program(mechanism: Mechanism) -> Program:
+    """Every axis, those with several turns first, then every quantity with limits of its own, inside its widened limits."""
+    turns = _other_turns(mechanism)
+    body: list[Statement] = []
+    for joint in sorted(mechanism.joints, key=lambda j: not j.multi_turn):  # what a turn carries along follows it
+        reason = replace(about_joint(joint.symbol, Why.BELOW, unit=_unit(joint.is_angle)), turns=turns.get(joint.key, ()))
+        body += _inside(joint.key, joint.axis, reason, f"limits of {joint.name}")
+    if mechanism.limited:
+        body += joint_lets(mechanism)
+    for quantity in mechanism.limited:
+        lets, (value,) = named_trigonometry(mechanism, [quantity.value / (DEGREE if quantity.is_angle else 1)])
+        name = _value(quantity)
+        reason = replace(about(quantity.meaning, Why.BELOW, unit=_unit(quantity.is_angle)), turns=turns.get(quantity.name, ()))
+        body += [*lets, Let(name, value, quantity.meaning)]
+        body += _inside(quantity.name, name, reason, f"limits of {quantity.meaning}")
+    return assemble("limits", body, [])
+
+
+def _inside(key: str, value: sp.Symbol, reason: Reason, note: str) -> tuple[Require, Require]:
+    """Not below the lower end, not above the upper one: the reason is given which of them, and how far."""
+    (lowest,), (highest,) = _ends(key)
+    below, above = replace(reason, why=Why.BELOW, amount=lowest - value), replace(reason, why=Why.ABOVE, amount=value - highest)
+    return (
+        Require(sp.Ge(value, lowest), Status.UNREACHABLE, note, below),
+        Require(sp.Le(value, highest), Status.UNREACHABLE, note, above),
+    )
+
+
+def _unit(is_angle: bool) -> Unit:
+    return Unit.ANGLE if is_angle else Unit.LENGTH
+
+
+def _value(quantity: Limited) -> sp.Symbol:
+    return real(f"value_{quantity.name}")
+
+
+def _other_turns(mechanism: Mechanism) -> dict[str, tuple[OtherTurn, ...]]:
+    """By the key of what has limits: the axes whose turn these may refuse, the last one first."""
+    found = {j.key: (OtherTurn(j.name, j.axis, *_ends(j.key)),) for j in mechanism.period_joints}
+    return found | {q.name: tuple(_of_quantity(q, mechanism)) for q in mechanism.limited if q.is_angle}
+
+
+def _of_quantity(quantity: Limited, mechanism: Mechanism) -> Iterator[OtherTurn]:
+    """Axes that turn a quantity once with each turn of their own: their limits, and how far it is from its own."""
+    value = _value(quantity)
+    low, high = _ends(quantity.name)
+    for joint in reversed(mechanism.joints):
+        slope = sp.diff(quantity.value, joint.symbol)
+        if not joint.multi_turn or slope not in (1, -1) or _moves_others(joint, quantity, mechanism):
+            continue
+        down, up = (low[0] - value, high[0] - value) if slope == 1 else (value - high[0], value - low[0])
+        lowest, highest = _ends(joint.key)
+        yield OtherTurn(joint.name, joint.axis, (*lowest, joint.axis + down), (*highest, joint.axis + up))
+
+
+def _moves_others(joint: Joint, quantity: Limited, mechanism: Mechanism) -> bool:
+    """Whether another joint of a quantity is geared to this axis."""
+    return any(j.coupling.has(joint.motor) for j in mechanism.joints if j.symbol in quantity.value.free_symbols)
+
+
+def _ends(key: str) -> tuple[tuple[sp.Expr], tuple[sp.Expr]]:
+    return (real(f"lowest_{key}"),), (real(f"highest_{key}"),)

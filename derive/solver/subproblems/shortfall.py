@@ -1,0 +1,91 @@
+"""How much is missing where the radicand of a two-root step is negative: the amount of its reason.
+
+In a product of lengths, (l1 + l2 - r)(l1 + l2 + r)(l1 - l2 + r)(l2 + r - l1) or (r - l)(r + l), it is the factor of least
+size, whatever signs the lengths have. Where a length occurs as its square alone, as the rod l in l^2 - x^2 - y^2, it would
+have to be so much longer or shorter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.ir.passes import bare_expression
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Let
+from derive.ir.reason import Reason, Unit, Why, about, about_joint
+from derive.ir.symbols import real
+
+
+def out_of_reach(joint: sp.Symbol, radicand: sp.Expr, known: Iterable[Let]) -> Reason:
+    """Why an angle has no value; `known` are the names in the radicand that have one."""
+    return _with_amount(about_joint(joint, Why.OUT_OF_REACH), radicand, known)
+
+
+def cannot_reach(what: str, radicand: sp.Expr, known: Iterable[Let]) -> Reason:
+    """Why a length has no value: the equation's rod does not reach."""
+    return _with_amount(about(what, Why.CANNOT_REACH), radicand, known)
+
+
+def _with_amount(reason: Reason, radicand: sp.Expr, known: Iterable[Let]) -> Reason:
+    values = {real(let.name.name): bare_expression(let.value) for let in known}
+    positive = {real(s.name) for s in radicand.free_symbols if s.is_positive}
+    positive |= {real(s.name) for let in known for s in let.value.free_symbols if s.is_positive}
+    lengths = frozenset(positive - values.keys())
+    missing = _missing(_written_out(bare_expression(radicand), values), values, lengths)
+    return reason if missing is None else replace(reason, amount=missing, unit=Unit.LENGTH)
+
+
+def _missing(radicand: sp.Expr, values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr | None:
+    sums = _factors(radicand)
+    if not sums:
+        return None
+    if all(t.as_coeff_Mul()[1].is_Symbol for f in sums for t in f.args):
+        return _least_factor(sums, values, lengths)
+    return _of_rod(sums, lengths)
+
+
+def _factors(radicand: sp.Expr) -> list[sp.Expr]:
+    """The sums in a product, in the signs in which all of them are positive where the step has roots."""
+    sums = [f for f in sp.Mul.make_args(radicand) if f.is_Add]
+    turned = [-f if _negative_terms(f) > 0 else f for f in sums]
+    is_negative = radicand.as_coeff_Mul()[0].is_negative
+    if is_negative != bool(sum(a != b for a, b in zip(sums, turned, strict=True)) % 2):
+        place = next((k for k, f in enumerate(turned) if _negative_terms(f) == 0), 0)
+        turned[place] = -turned[place]
+    return turned
+
+
+def _negative_terms(value: sp.Expr) -> int:
+    """How many more terms of a sum have a minus than have none."""
+    return sum(1 if term.could_extract_minus_sign() else -1 for term in value.args)
+
+
+def _least_factor(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr:
+    """Of a product of sums of lengths, of which one is negative whatever their signs are: its size."""
+    whole = sp.Add(*sums) / 2
+    signed = {s for s in whole.free_symbols - lengths if not isinstance(values.get(s), Root | Select)}
+    return sp.Add(*[sp.Abs(f) / 2 for f in sums]) - whole.xreplace({s: sp.Abs(s) for s in signed})
+
+
+def _of_rod(sums: list[sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr | None:
+    """How much a length that occurs as its square alone is too short or too long."""
+    for rod in sorted({s for f in sums for s in f.free_symbols if s in lengths}, key=str):
+        signs = [sp.expand(f).coeff(rod, 2) for f in sums]
+        if all(s in (1, -1) and not sp.expand(f - s * rod**2).has(rod) for s, f in zip(signs, sums, strict=True)):
+            below = [-f if len(sums) == 1 else _below_zero(f) for f in sums]
+            needed = sp.Add(rod**2, *[s * b for s, b in zip(signs, below, strict=True)])
+            return sp.Abs(Root(needed) - rod)
+    return None
+
+
+def _written_out(radicand: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """The radicand with the names in it that are products of lengths."""
+    return radicand.xreplace({s: v for s in radicand.free_symbols if (v := values.get(s, s)).is_Mul})
+
+
+def _below_zero(value: sp.Expr) -> sp.Expr:
+    """How far a value is below zero; zero where it is not."""
+    return (sp.Abs(value) - value) / 2

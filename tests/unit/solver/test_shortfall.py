@@ -1,0 +1,87 @@
+"""How much is missing where a two-root step has no root, against the triangle that would have to close."""
+
+from __future__ import annotations
+
+import sympy as sp
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from derive.ir.constants import DEGREE
+from derive.ir.interpret import run
+from derive.ir.passes import assemble
+from derive.ir.program import Let, Output
+from derive.ir.reason import Reason, Unit, Why
+from derive.ir.symbols import real
+from derive.solver.subproblems.shortfall import cannot_reach, out_of_reach
+
+LENGTH = st.floats(1.0, 500.0)
+SIGNED = LENGTH | LENGTH.map(lambda v: -v)
+FIRST, SECOND, ROD = (sp.Symbol(n, positive=True) for n in ("first", "second", "rod"))
+LEFT, RIGHT, X, Y = (real(n) for n in ("left", "right", "x", "y"))
+REACH = sp.Symbol("reach", positive=True)
+Q = real("q")
+
+
+def value(reason: Reason, **values: float) -> float:
+    """The amount at numbers."""
+    assert reason.amount is not None
+    found, _ = run(assemble("amount", [], [Output("amount", reason.amount)]), values)
+    return float(found["amount"])
+
+
+def triangle(first: sp.Expr, second: sp.Expr, third: sp.Expr) -> sp.Expr:
+    """Heron's product: negative where three lengths close no triangle."""
+    return (first + second - third) * (first + second + third) * (first - second + third) * (second + third - first)
+
+
+@given(LENGTH, LENGTH, LENGTH)
+def test_the_third_side_is_so_much_too_long_or_too_short(first: float, second: float, reach: float) -> None:
+    missing = max(reach - first - second, abs(first - second) - reach)
+    assume(missing > 1e-6)
+    reason = out_of_reach(Q, triangle(FIRST, SECOND, REACH), [])
+    assert (reason.why, reason.unit, reason.subject.name) == (Why.OUT_OF_REACH, Unit.LENGTH, "q")
+    assert abs(value(reason, first=first, second=second, reach=reach) - missing) < 1e-9 * (first + second + reach)
+
+
+@given(SIGNED, SIGNED, LENGTH)
+def test_whatever_signs_the_lengths_have(left: float, right: float, reach: float) -> None:
+    missing = max(reach - abs(left) - abs(right), abs(abs(left) - abs(right)) - reach)
+    assume(missing > 1e-6)
+    reason = out_of_reach(Q, triangle(LEFT, RIGHT, REACH), [])
+    assert abs(value(reason, left=left, right=right, reach=reach) - missing) < 1e-9 * (abs(left) + abs(right) + reach)
+
+
+@given(LENGTH, st.floats(-800.0, 800.0), st.floats(-800.0, 800.0))
+def test_a_rod_would_have_to_be_so_much_longer(rod: float, x: float, y: float) -> None:
+    assume(x * x + y * y > (rod + 1e-3) ** 2)
+    reason = cannot_reach("rod 1", sp.factor(ROD**2 - X**2 - Y**2), [])
+    assert reason.words == "rod 1 cannot reach"
+    assert abs(value(reason, rod=rod, x=x, y=y) - ((x * x + y * y) ** 0.5 - rod)) < 1e-6
+
+
+@given(LENGTH, st.floats(-800.0, 800.0), st.sampled_from([1, -1]), st.sampled_from([1, -1]))
+def test_in_whatever_signs_the_factors_are_written(rod: float, x: float, first: int, second: int) -> None:
+    assume(abs(x) > rod + 1e-3)
+    radicand = sp.Mul(first * second, first * (ROD - X), second * (ROD + X), evaluate=False)
+    assert abs(value(cannot_reach("rod 1", radicand, []), rod=rod, x=x) - (abs(x) - rod)) < 1e-9 * abs(x)
+
+
+@given(LENGTH, LENGTH, LENGTH, st.floats(-300.0, 300.0))
+def test_a_rod_in_a_product_that_has_a_name(arm: float, distance: float, rod: float, aside: float) -> None:
+    """The third side is what the rod spans in the plane of the arm: sqrt(rod^2 - aside^2), which the name stands for."""
+    square = rod * rod - aside * aside
+    assume(square > 1.0)
+    gap = max(distance - arm - square**0.5, abs(arm - distance) - square**0.5)
+    assume(gap > 1e-3)
+    third = real("third_square")
+    radicand = (third - (FIRST - SECOND) ** 2) * ((FIRST + SECOND) ** 2 - third)
+    reason = out_of_reach(Q, radicand, [Let(third, (ROD - X) * (ROD + X))])
+    needed = ((distance - arm) ** 2 + aside * aside) ** 0.5 if square < (distance - arm) ** 2 else None
+    assume(needed is not None)
+    assert needed is not None
+    assert abs(value(reason, first=arm, second=distance, rod=rod, x=aside) - abs(needed - rod)) < 1e-6
+
+
+def test_what_is_no_length_has_no_amount() -> None:
+    reason = out_of_reach(Q, 4 * DEGREE * X * Y, [])
+    assert (reason.amount, reason.unit) == (None, Unit.NONE)
