@@ -101,7 +101,7 @@ def foundation(profile: str | None, root: Path = ROOT) -> str:
 def canonical(value: object) -> str:
     """A text that two values have in common only if they are equal in every part. Raises `TypeError` for what has none."""
     if isinstance(value, sp.Basic | sp.MatrixBase):
-        return sp.srepr(value)
+        return str(sp.srepr(value))
     if isinstance(value, Enum) or value is None or isinstance(value, str | bool | int | float):
         return repr(value)
     if is_dataclass(value) and not isinstance(value, type):

@@ -31,6 +31,7 @@ from derive.ir.program import (
     Program,
     reads,
     rewritten,
+    told,
 )
 from derive.ir.symbols import (
     symbols_of,
@@ -180,9 +181,11 @@ def lengths_of(program: Program) -> frozenset[sp.Symbol]:
 
 
 def _graded(program: Program, names: frozenset[sp.Symbol]) -> frozenset[sp.Symbol] | None:
-    """All names that grow with these in proportion; None where something else is made of them."""
+    """All names that grow with these in proportion; None where something else is made of them, or a reason tells of them."""
     graded = set(names)
     for statement in program.body:
+        if any(symbols_of(value) & graded for value in told(statement)):
+            return None
         if not reads(statement) & graded:
             continue
         if not isinstance(statement, Let) or statement.name in names:

@@ -129,7 +129,7 @@ def _total_image(kin: Kinematics) -> list[Method]:
 
 def limits(kin: Kinematics) -> Method:
     """The test of the limits."""
-    return Method("limits", "Which limit the axes are beyond.", kin.limits, (_axes(kin),), "", (), is_explained=True)
+    return Method("limits", "The test of the limits.", kin.limits, (_axes(kin),), "", (), is_explained=True)
 
 
 def _axes(kin: Kinematics) -> Argument:

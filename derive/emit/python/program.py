@@ -105,7 +105,7 @@ def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter
 def _told(items: Sequence[Item], program: Program) -> list[Item]:
     """The statements, with what reasons read and a choice keeps to one of its sides written out in them."""
     values = {let.name: let.value for let in program.lets()}
-    bound = {s for s in program.inputs if s not in values}
+    bound: set[sp.Symbol] = set()
     found: list[Item] = []
     for item in items:
         found.append(item if isinstance(item, Arms) else told_in(item, bound, values))

@@ -34,17 +34,16 @@ def _with_amount(reason: Reason, radicand: sp.Expr, known: Iterable[Let]) -> Rea
     positive = {real(s.name) for s in radicand.free_symbols if s.is_positive}
     positive |= {real(s.name) for let in known for s in let.value.free_symbols if s.is_positive}
     lengths = frozenset(positive - values.keys())
-    missing = _missing(_written_out(bare_expression(radicand), values), values, lengths)
+    missing = _missing(_factors(bare_expression(radicand)), values, lengths)
     return reason if missing is None else replace(reason, amount=missing, unit=Unit.LENGTH)
 
 
-def _missing(radicand: sp.Expr, values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr | None:
-    sums = _factors(radicand)
+def _missing(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr | None:
     if not sums:
         return None
     if all(t.as_coeff_Mul()[1].is_Symbol for f in sums for t in f.args):
         return _least_factor(sums, values, lengths)
-    return _of_rod(sums, lengths)
+    return _of_rod(sums, values, lengths)
 
 
 def _factors(radicand: sp.Expr) -> list[sp.Expr]:
@@ -70,20 +69,21 @@ def _least_factor(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], leng
     return sp.Add(*[sp.Abs(f) / 2 for f in sums]) - whole.xreplace({s: sp.Abs(s) for s in signed})
 
 
-def _of_rod(sums: list[sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr | None:
-    """How much a length that occurs as its square alone is too short or too long."""
-    for rod in sorted({s for f in sums for s in f.free_symbols if s in lengths}, key=str):
-        signs = [sp.expand(f).coeff(rod, 2) for f in sums]
-        if all(s in (1, -1) and not sp.expand(f - s * rod**2).has(rod) for s, f in zip(signs, sums, strict=True)):
+def _of_rod(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr | None:
+    """How much a length that occurs as its square alone is too short or too long; the square may have a name with others."""
+    expanded = [sp.expand(_written_out(f, values)) for f in sums]
+    for rod in sorted({s for f in expanded for s in f.free_symbols if s in lengths}, key=str):
+        signs = [f.coeff(rod, 2) for f in expanded]
+        if all(s in (1, -1) and not sp.expand(f - s * rod**2).has(rod) for s, f in zip(signs, expanded, strict=True)):
             below = [-f if len(sums) == 1 else _below_zero(f) for f in sums]
             needed = sp.Add(rod**2, *[s * b for s, b in zip(signs, below, strict=True)])
             return sp.Abs(Root(needed) - rod)
     return None
 
 
-def _written_out(radicand: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """The radicand with the names in it that are products of lengths."""
-    return radicand.xreplace({s: v for s in radicand.free_symbols if (v := values.get(s, s)).is_Mul})
+def _written_out(value: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """A sum with the names in it that are products of lengths."""
+    return value.xreplace({s: v for s in value.free_symbols if (v := values.get(s, s)).is_Mul})
 
 
 def _below_zero(value: sp.Expr) -> sp.Expr:

@@ -1523,7 +1523,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
         highest_a1 = k.highest_a1

@@ -237,7 +237,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         return (axis_c,)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         (axis_c,) = axes
         k = self._constants
         highest_c = k.highest_c

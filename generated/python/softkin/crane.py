@@ -351,7 +351,7 @@ class Crane(OffsetKinematics):
         return (axis_r, axis_theta, axis_phi)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
         highest_phi = k.highest_phi

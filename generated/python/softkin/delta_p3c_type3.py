@@ -782,23 +782,10 @@ class DeltaP3CType3(OffsetKinematics):
             missing = abs(
                 outer_arm_1
                 - root(
-                    0.5*abs(
-                        (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
-                        - (
-                            outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
-                        )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
-                    )
+                    0.5*abs(third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1))
                     + outer_arm_1*outer_arm_1 + 0.5*(divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
-                    + 0.5*(divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1)
-                    - 0.5*abs(
-                        (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1)
-                        - (
-                            outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
-                        )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
-                    )
-                    - (
-                        outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
-                    )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
+                    + 0.5*(divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+                    - 0.5*abs(third_square_a1 - (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
@@ -826,23 +813,10 @@ class DeltaP3CType3(OffsetKinematics):
             missing = abs(
                 outer_arm_2
                 - root(
-                    0.5*abs(
-                        (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
-                        - (
-                            outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
-                        )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
-                    )
+                    0.5*abs(third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2))
                     + outer_arm_2*outer_arm_2 + 0.5*(divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
-                    + 0.5*(divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2)
-                    - 0.5*abs(
-                        (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2)
-                        - (
-                            outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
-                        )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
-                    )
-                    - (
-                        outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
-                    )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
+                    + 0.5*(divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+                    - 0.5*abs(third_square_a2 - (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
@@ -870,23 +844,10 @@ class DeltaP3CType3(OffsetKinematics):
             missing = abs(
                 outer_arm_3
                 - root(
-                    0.5*abs(
-                        (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
-                        - (
-                            outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
-                        )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
-                    )
+                    0.5*abs(third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3))
                     + outer_arm_3*outer_arm_3 + 0.5*(divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
-                    + 0.5*(divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3)
-                    - 0.5*abs(
-                        (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3)
-                        - (
-                            outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
-                        )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
-                    )
-                    - (
-                        outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
-                    )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
+                    + 0.5*(divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+                    - 0.5*abs(third_square_a3 - (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
@@ -964,7 +925,7 @@ class DeltaP3CType3(OffsetKinematics):
         return (axis_a1, axis_a2, axis_a3)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -1385,23 +1346,10 @@ class DeltaP3CType3(OffsetKinematics):
             missing = abs(
                 outer_arm_1
                 - root(
-                    0.5*abs(
-                        (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
-                        - (
-                            outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
-                        )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
-                    )
+                    0.5*abs(third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1))
                     + outer_arm_1*outer_arm_1 + 0.5*(divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
-                    + 0.5*(divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1)
-                    - 0.5*abs(
-                        (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1)
-                        - (
-                            outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
-                        )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
-                    )
-                    - (
-                        outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
-                    )*(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
+                    + 0.5*(divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+                    - 0.5*abs(third_square_a1 - (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
@@ -1429,23 +1377,10 @@ class DeltaP3CType3(OffsetKinematics):
             missing = abs(
                 outer_arm_2
                 - root(
-                    0.5*abs(
-                        (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
-                        - (
-                            outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
-                        )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
-                    )
+                    0.5*abs(third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2))
                     + outer_arm_2*outer_arm_2 + 0.5*(divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
-                    + 0.5*(divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2)
-                    - 0.5*abs(
-                        (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2)
-                        - (
-                            outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
-                        )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
-                    )
-                    - (
-                        outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
-                    )*(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
+                    + 0.5*(divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+                    - 0.5*abs(third_square_a2 - (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
@@ -1473,23 +1408,10 @@ class DeltaP3CType3(OffsetKinematics):
             missing = abs(
                 outer_arm_3
                 - root(
-                    0.5*abs(
-                        (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
-                        - (
-                            outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
-                        )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
-                    )
+                    0.5*abs(third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3))
                     + outer_arm_3*outer_arm_3 + 0.5*(divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
-                    + 0.5*(divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3)
-                    - 0.5*abs(
-                        (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3)
-                        - (
-                            outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
-                        )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
-                    )
-                    - (
-                        outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
-                    )*(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
+                    + 0.5*(divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+                    - 0.5*abs(third_square_a3 - (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)

@@ -213,7 +213,7 @@ class Gantry2(OffsetKinematics):
         return (axis_x, axis_y)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_x, axis_y = axes
         k = self._constants
         highest_x = k.highest_x

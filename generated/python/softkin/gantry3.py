@@ -255,7 +255,7 @@ class Gantry3(OffsetKinematics):
         return (axis_x, axis_y, axis_z)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_x, axis_y, axis_z = axes
         k = self._constants
         highest_x = k.highest_x

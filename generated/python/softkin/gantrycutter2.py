@@ -319,7 +319,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         return (axis_x, axis_y, axis_r)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_x, axis_y, axis_r = axes
         k = self._constants
         highest_r = k.highest_r

@@ -1892,7 +1892,7 @@ class Hexapod(IterativeForward):
         return (axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self._constants
         highest_l1 = k.highest_l1

@@ -284,7 +284,7 @@ class HGantry2(OffsetKinematics):
         return (axis_a, axis_b)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a, axis_b = axes
         k = self._constants
         highest_a = k.highest_a

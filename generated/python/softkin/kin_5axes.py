@@ -473,7 +473,7 @@ class Kin5Axes(Mechanism):
         return (axis_x, axis_y, axis_z, axis_a, axis_b)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self._constants
         highest_a = k.highest_a

@@ -481,7 +481,7 @@ class P2CType1(OffsetKinematics):
         return (axis_a1, axis_a2)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self._constants
         highest_a1 = k.highest_a1

@@ -265,7 +265,7 @@ class Polar(Mechanism):
         return (axis_c, axis_r)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_c, axis_r = axes
         k = self._constants
         highest_c = k.highest_c

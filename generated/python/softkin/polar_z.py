@@ -309,7 +309,7 @@ class PolarZ(Mechanism):
         return (axis_c, axis_r, axis_z)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_c, axis_r, axis_z = axes
         k = self._constants
         highest_c = k.highest_c

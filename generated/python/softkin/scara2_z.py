@@ -370,7 +370,7 @@ class Scara2Z(OffsetKinematics):
         return (axis_a1, axis_a2, axis_z)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a1, axis_a2, axis_z = axes
         k = self._constants
         highest_a1 = k.highest_a1

@@ -485,7 +485,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         highest_a1 = k.highest_a1

@@ -570,7 +570,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         return (axis_a1, axis_a2, axis_a3)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         coupling_12 = k.coupling_12

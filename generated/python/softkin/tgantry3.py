@@ -325,7 +325,7 @@ class TGantry3(OffsetKinematics):
         return (axis_a, axis_b, axis_z)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a, axis_b, axis_z = axes
         k = self._constants
         highest_a = k.highest_a

@@ -134,7 +134,7 @@ class Tool(OrientationKinematics):
         return ()
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:

@@ -666,7 +666,7 @@ class TripodLinear(OffsetKinematics):
         return (axis_a1, axis_a2, axis_a3)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         highest_a1 = k.highest_a1

@@ -599,15 +599,10 @@ class TripodRotary(OffsetKinematics):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
-                    )
+                    0.5*abs(third_square_a1 - (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1))
                     + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
-                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
-                    - 0.5*abs(
-                        (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
-                    )
-                    - (arm_length_2 + y)*(arm_length_2 - y)
+                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+                    - 0.5*abs(third_square_a1 - (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
@@ -636,23 +631,10 @@ class TripodRotary(OffsetKinematics):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
-                        + (
-                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-                    )
+                    0.5*abs(third_square_a2 - (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2))
                     + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
-                    + (
-                        0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                    )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-                    - 0.5*abs(
-                        (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
-                        + (
-                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-                    )
+                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+                    - 0.5*abs(third_square_a2 - (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
@@ -679,23 +661,10 @@ class TripodRotary(OffsetKinematics):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                        - (
-                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
-                    )
+                    0.5*abs(third_square_a3 - (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3))
                     + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
-                    - 0.5*abs(
-                        (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
-                        - (
-                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
-                    )
-                    - (
-                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+                    - 0.5*abs(third_square_a3 - (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
@@ -828,7 +797,7 @@ class TripodRotary(OffsetKinematics):
         return (axis_a1, axis_a2, axis_a3)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         highest_a1 = k.highest_a1
@@ -1171,17 +1140,10 @@ class TripodRotary(OffsetKinematics):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
-                        - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
-                    )
+                    0.5*abs(third_square_a1 - (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1))
                     + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
-                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
-                    - 0.5*abs(
-                        (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
-                        - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
-                    )
-                    - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
+                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+                    - 0.5*abs(third_square_a1 - (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
@@ -1210,23 +1172,10 @@ class TripodRotary(OffsetKinematics):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
-                        + (
-                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-                    )
+                    0.5*abs(third_square_a2 - (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2))
                     + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
-                    + (
-                        0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                    )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-                    - 0.5*abs(
-                        (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
-                        + (
-                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-                    )
+                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+                    - 0.5*abs(third_square_a2 - (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
@@ -1253,23 +1202,10 @@ class TripodRotary(OffsetKinematics):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                        - (
-                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
-                    )
+                    0.5*abs(third_square_a3 - (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3))
                     + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
-                    - 0.5*abs(
-                        (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
-                        - (
-                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
-                    )
-                    - (
-                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+                    - 0.5*abs(third_square_a3 - (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3))
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)

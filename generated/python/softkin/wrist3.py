@@ -404,7 +404,7 @@ class Wrist3(OrientationKinematics):
         return (axis_a, axis_b, axis_c)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a, axis_b, axis_c = axes
         k = self._constants
         highest_a = k.highest_a

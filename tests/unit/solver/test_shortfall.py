@@ -71,15 +71,13 @@ def test_a_rod_in_a_product_that_has_a_name(arm: float, distance: float, rod: fl
     """The third side is what the rod spans in the plane of the arm: sqrt(rod^2 - aside^2), which the name stands for."""
     square = rod * rod - aside * aside
     assume(square > 1.0)
-    gap = max(distance - arm - square**0.5, abs(arm - distance) - square**0.5)
-    assume(gap > 1e-3)
+    assume(abs(arm - distance) - square**0.5 > 1e-3)
     third = real("third_square")
     radicand = (third - (FIRST - SECOND) ** 2) * ((FIRST + SECOND) ** 2 - third)
     reason = out_of_reach(Q, radicand, [Let(third, (ROD - X) * (ROD + X))])
-    needed = ((distance - arm) ** 2 + aside * aside) ** 0.5 if square < (distance - arm) ** 2 else None
-    assume(needed is not None)
-    assert needed is not None
-    assert abs(value(reason, first=arm, second=distance, rod=rod, x=aside) - abs(needed - rod)) < 1e-6
+    needed = ((distance - arm) ** 2 + aside * aside) ** 0.5
+    assert reason.amount is not None and third in reason.amount.free_symbols
+    assert abs(value(reason, first=arm, second=distance, rod=rod, third_square=square) - abs(needed - rod)) < 1e-6
 
 
 def test_what_is_no_length_has_no_amount() -> None:

@@ -190,7 +190,7 @@ class ArrayPrograms(Programs):
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self.constants
         highest_a1 = k.highest_a1

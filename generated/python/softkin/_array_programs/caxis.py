@@ -73,7 +73,7 @@ class ArrayPrograms(OrientationPrograms):
         return (axis_c,), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         (axis_c,) = axes
         k = self.constants
         highest_c = k.highest_c

@@ -142,7 +142,7 @@ class ArrayPrograms(Programs):
         return (axis_r, axis_theta, axis_phi), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_r, axis_theta, axis_phi = axes
         k = self.constants
         highest_phi = k.highest_phi

@@ -51,7 +51,7 @@ class ArrayPrograms(Programs):
         return (axis_x, axis_y), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_x, axis_y = axes
         k = self.constants
         highest_x = k.highest_x

@@ -107,7 +107,7 @@ class ArrayPrograms(Programs):
         return (axis_x, axis_y, axis_z, axis_r), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_x, axis_y, axis_z, axis_r = axes
         k = self.constants
         highest_r = k.highest_r

@@ -657,7 +657,7 @@ class ArrayPrograms(StartedPrograms):
         return (axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self.constants
         highest_l1 = k.highest_l1

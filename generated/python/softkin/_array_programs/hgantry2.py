@@ -55,7 +55,7 @@ class ArrayPrograms(Programs):
         return (axis_a, axis_b), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a, axis_b = axes
         k = self.constants
         highest_a = k.highest_a

@@ -148,7 +148,7 @@ class ArrayPrograms(Programs):
         return (axis_x, axis_y, axis_z, axis_a, axis_b), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self.constants
         highest_a = k.highest_a

@@ -101,7 +101,7 @@ class ArrayPrograms(Programs):
         return (axis_c, axis_r), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_c, axis_r = axes
         k = self.constants
         highest_c = k.highest_c

@@ -107,7 +107,7 @@ class ArrayPrograms(Programs):
         return (axis_c, axis_r, axis_z), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_c, axis_r, axis_z = axes
         k = self.constants
         highest_c = k.highest_c

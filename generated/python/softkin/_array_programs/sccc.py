@@ -215,7 +215,7 @@ class ArrayPrograms(Programs):
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
         coupling_12 = k.coupling_12

@@ -60,7 +60,7 @@ class ArrayPrograms(Programs):
         return (axis_a, axis_b, axis_z), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a, axis_b, axis_z = axes
         k = self.constants
         highest_a = k.highest_a

@@ -36,7 +36,7 @@ class ArrayPrograms(OrientationPrograms):
         return (), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         status = passed(axes)
         return status
 

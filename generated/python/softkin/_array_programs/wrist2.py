@@ -122,7 +122,7 @@ class ArrayPrograms(OrientationPrograms):
         return (axis_a, axis_b), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a, axis_b = axes
         k = self.constants
         highest_a = k.highest_a

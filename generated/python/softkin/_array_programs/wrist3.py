@@ -142,7 +142,7 @@ class ArrayPrograms(OrientationPrograms):
         return (axis_a, axis_b, axis_c), status
 
     def limits(self, axes: Reals) -> Codes:
-        """Which limit the axes are beyond."""
+        """The test of the limits."""
         axis_a, axis_b, axis_c = axes
         k = self.constants
         highest_a = k.highest_a
