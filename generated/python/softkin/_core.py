@@ -189,8 +189,8 @@ class Mechanism(ABC):
         350 degrees apart takes its one value inside them; any other the value nearest to the reference. Limits
         refuse then, they never choose again: for a move from point to point name the period of an axis with a wider range.
         reference: one value an axis, the present axis values as a rule; without one, zeros.
-        Raises BAD_INPUT, UNREACHABLE (out of reach, or beyond a limit: then the message says whether another turn is
-        inside), or IMPOSSIBLE.
+        Raises BAD_INPUT, UNREACHABLE (out of reach, or beyond a limit), or IMPOSSIBLE. The `refusal` of the error is what
+        `diagnose` returns: which quantity, how much is missing, and whether another turn is inside.
         """
         position, rows = self._pose(frame)
         near = self._near(reference)
@@ -234,7 +234,7 @@ class Mechanism(ABC):
     def diagnose(
         self, frame: FrameLike, configuration: Iterable[int] | None = None, reference: Numbers | None = None
     ) -> Diagnosis:
-        """Why `inverse` refuses these arguments: which quantity, and how much is missing.
+        """Why `inverse` refuses these arguments, without raising: which quantity, and how much is missing.
 
         Where the configuration leaves branches open and none has a solution, it speaks of the first of them. Where the
         turn of an axis is beyond its limits and another one is not, `turn` is the number of that one: named in the period

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from derive.ir.interpret import run
 from derive.ir.program import Call, Iterate, Program, Require, Statement
+from derive.ir.reason import Why, about_machine
 from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.mechanisms.kin_hexapod import MECHANISM
@@ -63,4 +64,4 @@ def bounded(passes: int) -> Program:
 
 def without_mode() -> Program:
     """The same without the test of the assembly mode."""
-    return search_changed(lambda s: None if isinstance(s, Require) and s.note == "the other assembly mode" else s)
+    return search_changed(lambda s: None if isinstance(s, Require) and s.reason == about_machine(Why.OTHER_ASSEMBLY) else s)
