@@ -14,6 +14,7 @@ from derive.ir.constants import (
 )
 from derive.ir.symbols import (
     COORDINATE_NAMES,
+    count,
     real,
 )
 
@@ -86,7 +87,7 @@ class Joint(Quantity):
     @property
     def turn(self) -> sp.Symbol:
         """The commanded period number: 0 where it is open."""
-        return real(f"turn_{self.key}")
+        return count(f"turn_{self.key}")
 
     @property
     def offset(self) -> sp.Symbol:

@@ -21,7 +21,9 @@ from derive.ir.primitives import (
     NearestPeriod,
     Root,
     Select,
+    ToReal,
 )
+from derive.ir.symbols import is_condition, is_count
 
 _OR, _AND, COMPARE, _SUM, PRODUCT, _UNARY, ATOM = range(7)
 
@@ -55,7 +57,23 @@ class ExpressionPrinter(ABC):
 
     @abstractmethod
     def logic(self, word: str) -> str:
-        """The spelling of "and", "or", "true", "false"."""
+        """The spelling of "and", "or", "not", "true", "false"."""
+
+    def comparison(self, operator: str) -> str:
+        """The spelling of a comparison, given as Python has it."""
+        return operator
+
+    def value(self, name: sp.Symbol, value: sp.Basic) -> str:
+        """What is bound to a name, as its type is written: a whole number without a point."""
+        return self.whole(value) if is_count(name) else self.print(value)
+
+    def whole(self, expression: sp.Basic) -> str:
+        """A whole number as text."""
+        return _Whole(self).print(expression)
+
+    def factor(self, expression: sp.Basic) -> str:
+        """A whole number as a real one: of a language that converts it by itself, the number."""
+        return _Whole(self)._text(expression, ATOM)
 
     def print(self, expression: sp.Basic) -> str:
         """The expression as text."""
@@ -77,7 +95,12 @@ class ExpressionPrinter(ABC):
         if isinstance(node, sp.Mul | sp.Pow):
             return self._product(node)
         if isinstance(node, Relational):
-            return f"{self._text(node.lhs, _SUM)} {node.rel_op} {self._text(node.rhs, _SUM)}", COMPARE
+            sides = _Whole(self) if any(map(_is_whole, node.args)) else self
+            return f"{sides._text(node.lhs, _SUM)} {self.comparison(node.rel_op)} {sides._text(node.rhs, _SUM)}", COMPARE
+        if isinstance(node, sp.Not):
+            return f"{self.logic('not')} {self._text(node.args[0], ATOM)}", COMPARE
+        if isinstance(node, ToReal):
+            return self.factor(node.args[0]), ATOM
         if isinstance(node, sp.And):
             return self._joined(node, "and", COMPARE), _AND
         if isinstance(node, sp.Or):
@@ -87,7 +110,7 @@ class ExpressionPrinter(ABC):
 
     def _joined(self, node: sp.Basic, word: str, context: int) -> str:
         # Comparisons are parenthesised in both languages: a reader need not know their precedence.
-        parts = [f"({self._text(a, _OR)})" for a in sp.ordered(node.args)]
+        parts = [self._text(a, _OR) if a.is_Symbol else f"({self._text(a, _OR)})" for a in sp.ordered(node.args)]
         return f" {self.logic(word)} ".join(parts)
 
     def _number(self, node: sp.Number) -> tuple[str, int]:
@@ -123,6 +146,33 @@ class ExpressionPrinter(ABC):
         if bottom:
             text += "/" + (bottom[0] if len(bottom) == 1 else f"({'*'.join(bottom)})")
         return (f"-{text}", _SUM) if coefficient < 0 else (text, PRODUCT)
+
+
+class _Whole(ExpressionPrinter):
+    """Whole numbers in a language, and what is chosen among them by any condition."""
+
+    def __init__(self, language: ExpressionPrinter) -> None:
+        self.language = language
+
+    def name(self, symbol: sp.Symbol) -> str:
+        return self.language.name(symbol)
+
+    def number(self, value: float) -> str:
+        return str(int(value))
+
+    def call(self, key: str, arguments: Sequence[str]) -> str:
+        return self.language.call(key, arguments)
+
+    def logic(self, word: str) -> str:
+        return self.language.logic(word)
+
+    def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        return self.language._spell(node) if is_condition(node) else super()._spell(node)
+
+
+def _is_whole(node: sp.Basic) -> bool:
+    """Whether names make it a whole number."""
+    return bool(node.free_symbols) and all(map(is_count, node.free_symbols)) and not node.has(ToReal)
 
 
 def _is_negative(term: sp.Expr) -> bool:

@@ -16,6 +16,7 @@ from derive.ir.primitives import (
     Atan2,
     NearestPeriod,
     Select,
+    ToReal,
 )
 from derive.ir.program import (
     Let,
@@ -25,6 +26,7 @@ from derive.ir.program import (
 )
 from derive.ir.reason import Why, about_input
 from derive.ir.symbols import (
+    flag,
     real,
 )
 
@@ -97,12 +99,11 @@ def _near(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
     """
     shift = -joint.coupling / joint.unit
     reference = joint.reference if joint.coupling == 0 else free(joint) / joint.unit + joint.offset + shift
-    single = sp.Gt(real(f"single_{joint.key}"), 0)
-    open_value = real(f"open_{joint.key}")
-    commanded = Select(sp.Gt(joint.turn, 0), 360 * joint.turn - 360, 360 * joint.turn)
+    open_value, is_single = real(f"open_{joint.key}"), flag(f"single_{joint.key}")
+    commanded = Select(sp.Gt(joint.turn, 0), joint.turn - 1, joint.turn)
     return (
-        Let(open_value, Select(single, real(f"mid_{joint.key}"), reference), f"{joint.name}: where its turn is open"),
-        Let(near, Select(sp.Gt(sp.Abs(joint.turn), 0), commanded, open_value)),
+        Let(open_value, Select(is_single, real(f"mid_{joint.key}"), reference), f"{joint.name}: where its turn is open"),
+        Let(near, Select(sp.Ne(joint.turn, 0), 360 * ToReal(commanded), open_value)),
     )
 
 

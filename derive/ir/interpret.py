@@ -21,6 +21,7 @@ from derive.ir.primitives import (
     NearestPeriod,
     Root,
     Select,
+    ToReal,
 )
 from derive.ir.program import (
     Call,
@@ -36,7 +37,10 @@ from derive.ir.program import (
 from derive.ir.roots import At, nearest
 from derive.ir.symbols import (
     PLACE,
+    Flag,
+    is_count,
 )
+from derive.ir.types import Type, type_of
 
 Array = NDArray[np.float64]
 _SHIFT = 180.0 + float(EDGE)
@@ -60,14 +64,18 @@ _FUNCTIONS: dict[type[sp.Basic], Callable[..., Array]] = {
     Root: lambda x: np.sqrt(np.maximum(x, 0.0)),
     Atan2: lambda y, x: np.arctan2(y + 0.0, x + 0.0),  # a zero has no sign
     Select: np.where,
+    ToReal: lambda n: np.asarray(n, dtype=float),
     NearestPeriod: nearest_period,
     NearestOnArc: nearest_on_arc,
     sp.Le: np.less_equal,
     sp.Lt: np.less,
     sp.Ge: np.greater_equal,
     sp.Gt: np.greater,
+    sp.Eq: np.equal,
+    sp.Ne: np.not_equal,
     sp.And: lambda *c: reduce(np.logical_and, c),
     sp.Or: lambda *c: reduce(np.logical_or, c),
+    sp.Not: np.logical_not,
     sp.Add: lambda *t: reduce(np.add, t),
     sp.Mul: lambda *t: reduce(np.multiply, t),
     sp.Pow: lambda b, e: np.power(b, e),
@@ -88,7 +96,8 @@ def evaluate(expression: sp.Basic, values: Mapping[str, Array]) -> Array:
 
 def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array], NDArray[np.object_]]:
     """Outputs and statuses of a program for arrays of inputs; outputs are meaningful where the status is OK."""
-    known: dict[str, Array] = {k: np.asarray(v, dtype=float) for k, v in values.items()}
+    types = {s.name: s for s in program.inputs}
+    known: dict[str, Array] = {k: _as_declared(v, types.get(k)) for k, v in values.items()}
     shape = np.broadcast_shapes(*(v.shape for v in known.values())) if known else ()
     status = np.full(shape, Status.OK, dtype=object)
     with np.errstate(all="ignore"):
@@ -97,10 +106,17 @@ def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array]
     return outputs, status
 
 
+def _as_declared(value: Array, name: sp.Symbol | None) -> Array:
+    """The value of an input, in the type of its name: a flag may be given as 0 or 1, a whole number as a real one."""
+    if isinstance(name, Flag):
+        return np.asarray(value).astype(bool)
+    return np.asarray(value, dtype=np.int64 if is_count(name) else float)
+
+
 def _execute(statements: Iterable[Statement], known: dict[str, Array], status: NDArray[np.object_]) -> None:
     for statement in statements:
         if isinstance(statement, Let):
-            known[statement.name.name] = evaluate(statement.value, known)
+            known[statement.name.name] = _as_declared(evaluate(statement.value, known), statement.name)
         elif isinstance(statement, Require):
             _require(evaluate(statement.condition, known), statement.otherwise, status)
         elif isinstance(statement, Solve):
@@ -133,32 +149,35 @@ def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]
     looked = np.broadcast_to(evaluate(search.wanted, known), shape) & (status == Status.OK)
     rows = {k: np.broadcast_to(v, shape)[looked] for k, v in known.items()}
 
-    def at(program: Program, place: At) -> Array:
+    def at(program: Program, place: At) -> list[Array]:
         if not len(place.rows):
-            return np.zeros((0, len(program.outputs)))
+            return [np.zeros(0, dtype=bool if type_of(o.value) is Type.BOOL else float) for o in program.outputs]
         there = {s.name: rows[s.name][place.rows] for s in program.inputs if s not in PLACE}
-        there |= {s.name: np.asarray(v, dtype=float) for s, v in zip(PLACE, place[1:], strict=True)}
-        outputs, _ = run(program, there)
-        return np.stack([np.broadcast_to(outputs[o.name], place.joint.shape) for o in program.outputs], axis=1)
+        outputs, _ = run(program, there | {s.name: v for s, v in zip(PLACE, place[1:], strict=True)})
+        return [np.broadcast_to(outputs[o.name], place.joint.shape) for o in program.outputs]
+
+    def finished(place: At) -> tuple[NDArray[np.bool_], Array]:
+        fits, *values = at(search.finish, place)
+        return np.asarray(fits, dtype=bool), np.stack(values, axis=1)
 
     start = np.broadcast_to(evaluate(search.start, known), shape)[looked]
-    found, values = nearest(lambda place: at(search.trial, place), lambda place: at(search.finish, place), start)
-    columns = np.concatenate([found[:, None], values], axis=1)
-    for name, column in zip(search.names, columns.T, strict=True):
-        known[name.name] = np.zeros(shape)
+    found, values = nearest(lambda place: np.stack(at(search.trial, place), axis=1), finished, start)
+    for name, column in zip(search.names, (found, *values.T), strict=True):
+        known[name.name] = np.zeros(shape, dtype=column.dtype)
         known[name.name][looked] = column
 
 
 def _iterate(loop: Iterate, known: dict[str, Array], status: NDArray[np.object_]) -> None:
     """Rows that are done keep their state, and so every name of the step, while the others go on."""
-    known.update({name.name: evaluate(value, known) for name, value in zip(loop.state, loop.start, strict=True)})
+    start = [_as_declared(evaluate(value, known), name) for name, value in zip(loop.state, loop.start, strict=True)]
+    known.update(zip((name.name for name in loop.state), start, strict=True))
     done = np.zeros(status.shape, dtype=bool)
     for _ in range(loop.limit):
         _execute(loop.step, known, status)
         done = np.broadcast_to(evaluate(loop.done, known), status.shape)
         if np.all(done | (status != Status.OK)):
             break
-        following = [evaluate(value, known) for value in loop.following]
+        following = [_as_declared(evaluate(v, known), n) for n, v in zip(loop.state, loop.following, strict=True)]
         known.update({n.name: np.where(done, known[n.name], v) for n, v in zip(loop.state, following, strict=True)})
     _require(done, loop.otherwise, status)
 

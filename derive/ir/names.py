@@ -10,6 +10,7 @@ from derive.ir.program import (
     Program,
 )
 from derive.ir.symbols import (
+    called,
     real,
 )
 
@@ -26,11 +27,11 @@ class Names:
         """Those that a program reads or binds."""
         return cls(s.name for s in (*program.inputs, *program.bound()))
 
-    def fresh(self, proposal: str) -> sp.Symbol:
-        """The proposal, with a number behind it where it is taken."""
+    def fresh(self, proposal: str, like: sp.Symbol | None = None) -> sp.Symbol:
+        """The proposal, with a number behind it where it is taken. like: a name of the same type, else it is a real number."""
         number, name = 1, proposal
         while name.replace("_", "") in self._joined:
             number += 1
             name = f"{proposal}_{number}"
         self._joined.add(name.replace("_", ""))
-        return real(name)
+        return real(name) if like is None else called(name, like)

@@ -38,7 +38,7 @@ from derive.ir.program import (
 )
 from derive.ir.reason import Unit
 from derive.ir.symbols import (
-    real,
+    called,
     symbols_of,
 )
 from derive.ir.verify import BrokenProgram, verify
@@ -60,8 +60,8 @@ def with_inputs(program: Program) -> Program:
 
 @cache
 def bare_expression(value: sp.Basic) -> sp.Expr:
-    """Symbols without assumptions of their own: in a program a name is a name. Pi is 180 degrees, a square root a root."""
-    named = value.xreplace({s: real(s.name) for s in value.free_symbols if s != DEGREE})
+    """Symbols with no assumption but their type: in a program a name is a name. Pi is 180 degrees, a square root a root."""
+    named = value.xreplace({s: called(s.name, s) for s in value.free_symbols if s != DEGREE})
     rooted = named.replace(_is_square_root, lambda power: Root(power.base) ** sp.sign(power.exp))
     return rooted.subs(sp.pi, 180 * DEGREE) if rooted.has(sp.pi) else rooted
 
@@ -72,7 +72,7 @@ def _is_square_root(node: sp.Basic) -> bool:
 
 def bare(statements: Iterable[Statement]) -> tuple[Statement, ...]:
     """The statements with plain names: in a program a name is a name, whatever the solver knew of its sign."""
-    return tuple(renamed(rewritten(s, bare_expression), lambda name: real(name.name)) for s in statements)
+    return tuple(renamed(rewritten(s, bare_expression), lambda name: called(name.name, name)) for s in statements)
 
 
 def renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> Statement:
@@ -110,7 +110,7 @@ def _without_aliases(
                 raise BrokenProgram(f"{s.name} is bound twice, to {bound[s.name]} and to {s.value}")
             if s.name in aliases or s.name in names:
                 continue  # the same Let again
-            if value.is_Symbol or value.is_Number:
+            if value.is_Symbol or value.is_Number or value in (sp.true, sp.false):
                 aliases[s.name] = value
                 continue
         if isinstance(s, Iterate):
@@ -223,7 +223,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
                 body.append(replace(s, value=value))
                 continue
             if value not in by_value:
-                name = names_taken.fresh(s.name.name)
+                name = names_taken.fresh(s.name.name, s.name)
                 known.add(name.name)
                 by_value[value] = name
                 hoisted.append(replace(s, name=name, value=value))

@@ -33,6 +33,18 @@ class Select(sp.Function):
         return first if first == second else None
 
 
+class ToReal(sp.Function):
+    """to_real(n): a whole number as a real one, where it multiplies."""
+
+    nargs = 1
+    is_real = True
+
+    @classmethod
+    def eval(cls, number: sp.Expr) -> sp.Expr | None:
+        """A known number is both."""
+        return number if number.is_Integer else None
+
+
 class NearestPeriod(sp.Function):
     """nearest_period(value, centre): value + 360 k in [centre - 180, centre + 180), in degrees.
 
@@ -66,6 +78,7 @@ PRIMITIVES: tuple[type[sp.Function], ...] = (
     Root,
     Atan2,
     Select,
+    ToReal,
     NearestPeriod,
     NearestOnArc,
 )

@@ -1,7 +1,7 @@
-"""The intermediate representation: straight-line, total programs over real numbers.
+"""The intermediate representation: straight-line, total programs over numbers and flags.
 
 A program binds names (`Let`), sets a status (`Require`) and ends in outputs. Values are SymPy
-expressions over a closed set of primitives, so that every language needs one printer and nothing else.
+expressions over a closed set of primitives, each of a type (`types`), so that every language needs one printer and nothing else.
 Every `Let` is defined for any finite input: a `Require` protects nothing, it only decides the status.
 It can therefore be printed as an early return (Structured Text, scalar Python) or as a mask (NumPy).
 
@@ -42,7 +42,8 @@ class Let:
     """Bind `name` to `value`. `note` names the step of the derivation, for the reader."""
 
     name: sp.Symbol
-    value: sp.Expr
+    value: sp.Basic
+    """A number, or of a flag a condition."""
     note: str = ""
     turn_of: str = ""
     """The axis whose turn the value chooses; empty where it chooses none."""
@@ -146,13 +147,13 @@ class Call:
 
 @dataclass(frozen=True)
 class FindRoot:
-    """Bind `names` to 1 and the outputs of `finish` at the root of `trial` that fits and is nearest to `start` on the circle.
+    """Bind `names` to true and the outputs of `finish` at the root of `trial` that fits and is nearest to `start` on the circle.
 
     A trial is a function of `TRIED`, on the wanted side of a two-root step (`SIDE` +1) or the other (-1), with the partial step
     of the number `FREED` given by `FREED_ANGLE` instead (-1: none). Its outputs are the value that must vanish, its slope, a
     guard that is negative where there is no solution, its slope, then cosine and sine of the angle of every partial step.
-    `finish` has the same arguments; its first output is 1 where the root is wanted, else 0. See `roots` for how roots are
-    found. Where there is none, or `wanted` does not hold so that none is looked for, the names are bound to zeros.
+    `finish` has the same arguments; its first output is whether the root is wanted. See `roots` for how roots are
+    found. Where there is none, or `wanted` does not hold so that none is looked for, the names are bound to false and zeros.
     """
 
     trial: Program

@@ -76,13 +76,15 @@ class At(NamedTuple):
 
     rows: Rows
     joint: Reals
-    side: Reals
+    side: Rows
     freed: Rows
     """The number of the direction that is given by `angle` instead, or -1."""
     angle: Reals
 
 
 Trial = Callable[[At], Reals]
+Finish = Callable[[At], tuple[Flags, Reals]]
+"""Whether a root fits, and what is said of it."""
 """The columns value, slope, guard, slope of the guard, then cosine and sine of every direction."""
 VALUE, SLOPE, GUARD, GUARD_SLOPE, DIRECTIONS = range(5)
 
@@ -113,9 +115,9 @@ class Cells:
         """The joint at s."""
         return np.asarray(self.base + self.scale * np.where(self.curved, s * s, s))
 
-    def side(self, s: Reals) -> Reals:
+    def side(self, s: Reals) -> Rows:
         """The side at s."""
-        return np.where(self.curved & (s < 0.0), -1.0, 1.0)
+        return np.where(self.curved & (s < 0.0), -1, 1)
 
     def at(self, trial: Trial, s: Reals) -> Reals:
         """What the trial says at s."""
@@ -143,7 +145,8 @@ def joined(*parts: Cells) -> Cells:
 def find_roots(trial: Trial, start: Reals) -> At:
     """Every root of every row, and more that only a look at the whole closure tells from roots; in no order."""
     if not len(start):
-        return At(np.zeros(0, dtype=int), start, start, np.zeros(0, dtype=int), start)
+        none = np.zeros(0, dtype=int)
+        return At(none, start, none, none, start)
     cells = _around(trial, start)
     found = [_start(trial, start)]
     ends, holding = [cells.take(np.zeros(0, dtype=int))], [cells.take(np.zeros(0, dtype=int))]
@@ -164,17 +167,17 @@ def find_roots(trial: Trial, start: Reals) -> At:
     return _all([*found, *_closed_in(trial, joined(*holding))])
 
 
-def nearest(trial: Trial, finish: Trial, start: Reals) -> tuple[Flags, Reals]:
-    """Whether a row has a root that fits, and what `finish` says at the nearest of them, without its first column."""
+def nearest(trial: Trial, finish: Finish, start: Reals) -> tuple[Flags, Reals]:
+    """Whether a row has a root that fits, and what `finish` says at the nearest of them."""
     place = find_roots(trial, start)
-    values = finish(place)
+    is_wanted, values = finish(place)
     away = place.joint - start[place.rows]
     away = np.abs(away - 2.0 * np.pi * np.round(away / (2.0 * np.pi)))
-    fits = np.flatnonzero(values[:, 0] > 0.5)
+    fits = np.flatnonzero(is_wanted)
     order = fits[np.lexsort((away[fits], place.rows[fits]))]
     rows, first = np.unique(place.rows[order], return_index=True)
-    found, answer = np.zeros(len(start), dtype=bool), np.zeros((len(start), values.shape[1] - 1))
-    found[rows], answer[rows] = True, values[order[first], 1:]
+    found, answer = np.zeros(len(start), dtype=bool), np.zeros((len(start), values.shape[1]))
+    found[rows], answer[rows] = True, values[order[first]]
     return found, answer
 
 
@@ -193,7 +196,7 @@ def _vanishes(said: Reals) -> Flags:
 def _start(trial: Trial, start: Reals) -> At:
     """The starts that are roots themselves: a path stands there."""
     rows = np.arange(len(start))
-    place = At(rows, start, np.ones(len(rows)), np.full(len(rows), -1), np.zeros(len(rows)))
+    place = At(rows, start, np.ones(len(rows), dtype=int), np.full(len(rows), -1), np.zeros(len(rows)))
     said = trial(place)
     is_root = _vanishes(said)
     return At(rows[is_root], start[is_root], place.side[is_root], place.freed[is_root], place.angle[is_root])

@@ -5,13 +5,43 @@ from __future__ import annotations
 from functools import cache
 
 import sympy as sp
+from sympy.logic.boolalg import Boolean
 
 from derive.ir.constants import DEGREE
 
 
+class Flag(sp.Symbol):
+    """A name that is true or false: a condition by itself."""
+
+
 def real(name: str) -> sp.Symbol:
-    """The real symbol of that name: the one way to make a name that a program reads or binds."""
+    """The name of a real number; of an angle, too: see `types`."""
     return sp.Symbol(name, real=True)
+
+
+def flag(name: str) -> sp.Symbol:
+    """The name of what is true or false."""
+    return Flag(name)
+
+
+def count(name: str) -> sp.Symbol:
+    """The name of a whole number: a sign, the number of a turn or of a status, a count of passes."""
+    return sp.Symbol(name, integer=True)
+
+
+def is_count(symbol: sp.Basic) -> bool:
+    """Whether it is the name of a whole number."""
+    return isinstance(symbol, sp.Symbol) and bool(symbol.is_integer)
+
+
+def is_condition(value: sp.Basic) -> bool:
+    """Whether a value is true or false: a comparison, what is made of such, or a flag."""
+    return isinstance(value, Flag) or (isinstance(value, Boolean) and not value.is_Symbol)
+
+
+def called(name: str, like: sp.Symbol) -> sp.Symbol:
+    """A name of the same type as another, whatever else the solver knows of that one."""
+    return flag(name) if isinstance(like, Flag) else count(name) if is_count(like) else real(name)
 
 
 def symbols_of(expression: sp.Basic) -> set[sp.Symbol]:
@@ -50,6 +80,6 @@ BASE_AXIS = tuple(real(f"base_axis_{c}") for c in COORDINATE_NAMES)
 START_POSITION = tuple(real(f"start_{c}") for c in COORDINATE_NAMES)
 START_ROTATION = tuple(real(f"start_{r.name}") for r in ROTATION_ENTRIES)
 
-TRIED, SIDE, FREED, FREED_ANGLE = map(real, ("tried", "side", "freed", "freed_angle"))
+TRIED, SIDE, FREED, FREED_ANGLE = real("tried"), count("side"), count("freed"), real("freed_angle")
 PLACE = (TRIED, SIDE, FREED, FREED_ANGLE)
 """Where a trial is made: see `FindRoot`."""

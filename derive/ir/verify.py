@@ -14,8 +14,11 @@ from derive.ir.primitives import (
 )
 from derive.ir.program import (
     Call,
+    FindRoot,
     Iterate,
+    Let,
     Program,
+    Require,
     Solve,
     Statement,
     binds,
@@ -25,10 +28,11 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     symbols_of,
 )
+from derive.ir.types import IllTypedError, Type, fits, type_of
 
 _PORTABLE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _ARITHMETIC = (sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Rational, sp.Float, sp.Integer)
-_LOGIC = (sp.Le, sp.Lt, sp.Ge, sp.Gt, sp.And, sp.Or)
+_LOGIC = (sp.Le, sp.Lt, sp.Ge, sp.Gt, sp.Eq, sp.Ne, sp.And, sp.Or, sp.Not)
 
 
 class BrokenProgram(Exception):
@@ -36,8 +40,8 @@ class BrokenProgram(Exception):
 
 
 def verify(program: Program) -> Program:
-    """Return the program, or raise `BrokenProgram`: unbound or repeated name, unportable name, unknown primitive."""
-    bound = {s.name for s in program.inputs} | {DEGREE.name}
+    """Return the program, or raise `BrokenProgram`: unbound or repeated name, unportable name, unknown primitive, mixed types."""
+    bound = {s.name: s for s in (*program.inputs, DEGREE)}
     spelled: dict[str, str] = {}
     for name in [s.name for s in program.inputs] + [name.name for name in program.bound()]:
         _check_name(program, name, spelled)
@@ -45,10 +49,11 @@ def verify(program: Program) -> Program:
         _check_statement(program, statement, bound)
     for output in program.outputs:
         _check_expression(program, output.value, bound)
+        _type(program, output.value)
     return program
 
 
-def _check_statement(program: Program, statement: Statement, bound: set[str]) -> None:
+def _check_statement(program: Program, statement: Statement, bound: dict[str, sp.Symbol]) -> None:
     """Check what a statement reads, and add what it binds."""
     if isinstance(statement, Iterate):
         _check_loop(program, statement, bound)
@@ -61,7 +66,8 @@ def _check_statement(program: Program, statement: Statement, bound: set[str]) ->
         _check_call(program, statement)
     for value in (*expressions(statement), *told(statement)):
         _check_expression(program, value, bound)
-    bound |= {name.name for name in binds(statement)}
+    bound |= {name.name: name for name in binds(statement)}
+    _check_types(program, statement)
 
 
 def _check_call(program: Program, call: Call) -> None:
@@ -75,16 +81,17 @@ def _check_call(program: Program, call: Call) -> None:
         raise BrokenProgram(f"{program.name}: {call.program.name} reads {unbound[0]!r}, which is neither given nor an input")
 
 
-def _check_loop(program: Program, loop: Iterate, bound: set[str]) -> None:
+def _check_loop(program: Program, loop: Iterate, bound: dict[str, sp.Symbol]) -> None:
     if not len(loop.state) == len(loop.start) == len(loop.following) or loop.limit < 1:
         raise BrokenProgram(f"{program.name}: state, start and following of a loop must be as many, its limit at least 1")
     for value in loop.start:
         _check_expression(program, value, bound)
-    bound |= {name.name for name in loop.state}
+    bound |= {name.name: name for name in loop.state}
     for inner in loop.step:
         _check_statement(program, inner, bound)
     for value in (loop.done, *loop.following):
         _check_expression(program, value, bound)
+    _check_types(program, loop)
     for own, value in zip(loop.state, loop.following, strict=True):
         if others := sorted(s.name for s in symbols_of(value) if s in loop.state and s != own):
             raise BrokenProgram(f"{program.name}: what follows {own} reads {others[0]!r}, which may have been assigned before")
@@ -99,14 +106,63 @@ def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:
     spelled[key] = name
 
 
-def _check_expression(program: Program, value: sp.Basic, bound: set[str]) -> None:
+def _check_expression(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol]) -> None:
     for node in sp.preorder_traversal(value):
         if isinstance(node, sp.Symbol) and node.name not in bound:
             raise BrokenProgram(f"{program.name}: {node.name!r} is read before it is bound, in {value}")
+        if isinstance(node, sp.Symbol) and bound[node.name] != node:
+            raise BrokenProgram(f"{program.name}: {node.name!r} is read as another type than it is bound, in {value}")
         if isinstance(node, sp.Pow) and not _is_power_printable(node):
             raise BrokenProgram(f"{program.name}: power {node} is not an integer power")
         if not isinstance(node, _ARITHMETIC + _LOGIC + PRIMITIVES) and node not in (sp.true, sp.false):
             raise BrokenProgram(f"{program.name}: {type(node).__name__} is not a primitive, in {value}")
+
+
+def _check_types(program: Program, statement: Statement) -> None:
+    """Every value has the type of its name, and what is asked is a condition."""
+    if isinstance(statement, Let):
+        _fit(program, statement.name, statement.value)
+    elif isinstance(statement, Require):
+        _is(program, statement.condition, Type.BOOL)
+    elif isinstance(statement, Solve):
+        for value in (*statement.matrix, *statement.right):
+            _is(program, value, Type.REAL)
+    elif isinstance(statement, Call):
+        outputs = {o.name: o.value for o in statement.program.outputs}
+        for name, value in (*statement.given, *((n, outputs[n.name]) for n in statement.names)):
+            _fit(program, name, value)
+    elif isinstance(statement, FindRoot):
+        _check_search(program, statement)
+    else:
+        for name, *values in zip(statement.state, statement.start, statement.following, strict=True):
+            for value in values:
+                _fit(program, name, value)
+        _is(program, statement.done, Type.BOOL)
+
+
+def _check_search(program: Program, search: FindRoot) -> None:
+    """Where to start is a number, whether to look a condition, and so is the first that a root is asked and has."""
+    _is(program, search.start, Type.REAL)
+    _is(program, search.wanted, Type.BOOL)
+    for name, output in zip(search.names, search.finish.outputs, strict=True):
+        _fit(program, name, output.value)
+    _is(program, search.finish.outputs[0].value, Type.BOOL)
+
+
+def _fit(program: Program, name: sp.Symbol, value: sp.Basic) -> None:
+    _is(program, value, type_of(name))
+
+
+def _is(program: Program, value: sp.Basic, wanted: Type) -> None:
+    if not fits(found := _type(program, value), wanted):
+        raise BrokenProgram(f"{program.name}: {value} is {found.value}, and {wanted.value} is wanted")
+
+
+def _type(program: Program, value: sp.Basic) -> Type:
+    try:
+        return type_of(value)
+    except IllTypedError as problem:
+        raise BrokenProgram(f"{program.name}: {problem}") from None
 
 
 def _is_power_printable(node: sp.Pow) -> bool:

@@ -53,8 +53,7 @@ def assembled(mechanism: Mechanism, forward: Forward) -> Assembled:
     if mechanism.assembly is None or forward.slope is None:
         return Assembled(forward, None)
     first = mechanism.assembly.signs[0] * _orientation(mechanism, forward)
-    flag = real(mechanism.assembly.parameter)
-    chosen = first * (1 - 2 * flag)
+    chosen: sp.Expr = first * (1 - 2 * real(mechanism.assembly.parameter))
     if mechanism.assembly.handedness != 1:
         chosen = Select(sp.Gt(with_fixed_names(mechanism, mechanism.assembly.handedness), 0), chosen, -chosen)
     sign = Let(ASSEMBLY_SIGN, chosen, "assembly mode of this machine")

@@ -18,6 +18,9 @@ from derive.equations.problem import Slope
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.interpret import run
 from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    ToReal,
+)
 from derive.ir.program import (
     Let,
     Output,
@@ -26,6 +29,7 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
+    count,
     real,
 )
 from derive.kinematics.forward import (
@@ -48,7 +52,12 @@ class Assignment:
     @property
     def sigma(self) -> sp.Symbol:
         """The branch's own sign: +1 is byte 1."""
-        return real(f"sigma_{self.branch.name}")
+        return count(f"sigma_{self.branch.name}")
+
+    @property
+    def factor(self) -> sp.Symbol:
+        """The same as a number that multiplies."""
+        return real(f"sign_{self.branch.name}")
 
     def margin(self, mechanism: Mechanism) -> sp.Expr:
         """The signed, scaled slope: positive is byte 1."""
@@ -118,9 +127,11 @@ def _signs(
 
 
 def with_branch_signs(statements: Sequence[Statement], assignments: Sequence[Assignment]) -> tuple[Statement, ...]:
-    """The derivation with every sign replaced by that of its branch."""
-    table = {a.slope.sigma: a.orientation * a.sigma for a in assignments}
-    return tuple(rewritten(s, lambda e: e.xreplace(table)) for s in statements)
+    """The derivation with every sign replaced by that of its branch, which becomes a number here."""
+    table = {a.slope.sigma: a.orientation * a.factor for a in assignments}
+    named = ((a, f"{a.branch.name}: +1 {a.branch.names[0]}, -1 {a.branch.names[1]}") for a in assignments)
+    signs = (Let(a.factor, ToReal(a.sigma), note) for a, note in named)
+    return (*signs, *(rewritten(s, lambda e: e.xreplace(table)) for s in statements))
 
 
 def margin_lets(mechanism: Mechanism, assignments: Sequence[Assignment]) -> tuple[Let, ...]:

@@ -39,6 +39,7 @@ from derive.ir.symbols import (
 )
 from derive.kinematics.assembly import Assembled, assembled, assembly_checks, bound_checks
 from derive.kinematics.branch_assignment import Assignment, assign, margin_lets, with_branch_signs
+from derive.kinematics.choices import with_choices
 from derive.kinematics.coupling import (
     coupling_programs,
 )
@@ -181,7 +182,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
     """Everything together, with what depends on parameters alone moved into the setup."""
     parameters = machine_parameters(mechanism)
     constants = {o.name for o in setup_program(mechanism, parameters, ()).outputs}
-    lowered, hoisted = hoist((*shared(programs), *programs), constants)
+    lowered, hoisted = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], constants)
     setup = setup_program(mechanism, parameters, hoisted)
     settable = setup_program(mechanism, parameters, hoisted, has_settings=True) if mechanism.period_joints else None
     finished = {program.name: program for program in lowered}

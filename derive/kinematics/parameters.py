@@ -20,6 +20,7 @@ from derive.ir.constants import (
 from derive.ir.passes import bare, renamed
 from derive.ir.primitives import (
     Select,
+    ToReal,
 )
 from derive.ir.program import (
     Let,
@@ -34,9 +35,13 @@ from derive.ir.reason import Why, about_input, about_parameters
 from derive.ir.symbols import (
     MIN_TYPE2_MARGIN,
     SCALE,
+    called,
+    flag,
+    is_count,
     real,
 )
 from derive.ir.verify import verify
+from derive.kinematics.choices import converted, input_of
 from derive.plate.plate import machine_constants, machine_statements
 
 CHECK_LIMITS = "check_limits"
@@ -61,7 +66,7 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
             parameters.append(_setting(f"{word}_{quantity.name}", meaning, unit, None))
     parameters += _assembly_parameters(mechanism)
     check = Parameter(
-        real(CHECK_LIMITS), CHECK_LIMITS, Role.FLAG, "inverse kinematics tests the limits", "", 0.0, 1.0, False, 1.0, 1.0
+        flag(CHECK_LIMITS), CHECK_LIMITS, Role.FLAG, "inverse kinematics tests the limits", "", 0.0, 1.0, False, 1.0, 1.0
     )
     return (*parameters, check)
 
@@ -108,7 +113,7 @@ def setup_program(
         body += constraint.steps
         body.append(_needed(_inequality(constraint.condition), constraint.message))
     ends = {o.name for key in limited_keys(mechanism) for o in _limit_outputs(key)}
-    outputs = [Output(p.name, real(p.name)) for p in parameters if p.name not in ends]
+    outputs = [_as_constant(p) for p in parameters if p.name not in ends]
     for joint in mechanism.joints:
         body += [_ordered(joint.key), *_limits(joint.key, _fallback(joint))]
         outputs += _limit_outputs(joint.key)
@@ -129,8 +134,15 @@ def setup_program(
         outputs.append(Output(TIE_OF_LENGTHS.name, TIE_OF_LENGTHS))
     body += hoisted
     outputs += [*(Output(let.name.name, let.name) for let in hoisted)]
-    inputs = tuple(real(p.name) for p in parameters)
-    return verify(Program("setup", inputs, bare(body), tuple(outputs)))
+    inputs = tuple(input_of(p) for p in parameters)
+    typed = tuple(converted(s, parameters) for s in bare(body))
+    return verify(Program("setup", inputs, typed, tuple(outputs)))
+
+
+def _as_constant(parameter: Parameter) -> Output:
+    """The parameter as the other programs read it: a sign is a number that multiplies."""
+    own = input_of(parameter)
+    return Output(parameter.name, ToReal(own) if is_count(own) else own)
 
 
 def limited_keys(mechanism: Mechanism) -> tuple[str, ...]:
@@ -155,11 +167,11 @@ def has_length(parameters: Iterable[Parameter]) -> bool:
 
 
 def _range_of(parameter: Parameter) -> tuple[Require, ...]:
-    symbol, note = parameter.symbol, f"{parameter.name}: {parameter.meaning}"
+    note = f"{parameter.name}: {parameter.meaning}"
     if parameter.role is Role.FLAG:
         return ()
     if parameter.role is Role.SIGN:
-        condition = sp.And(sp.Ge(sp.Abs(symbol), 1), sp.Le(sp.Abs(symbol), 1))
+        condition = sp.Or(sp.Eq(input_of(parameter), 1), sp.Eq(input_of(parameter), -1))
         return (_needed(condition, note),)
     bare = real(parameter.name)  # without assumptions: SymPy must not decide `length > 0` by itself
     low = sp.Float(parameter.low) if parameter.low % 1 else sp.Integer(int(parameter.low))
@@ -217,15 +229,14 @@ def _without_limits(joint: Joint) -> str:
 def _limits(key: str, fallback: Fallback) -> tuple[Let, ...]:
     lower, upper = real(f"lower_{key}"), real(f"upper_{key}")
     low, high, unlimited = _effective(key)
-    open_ended = sp.Le(sp.Abs(lower) + sp.Abs(upper), 0)
-    low_value, high_value, free = lower, upper, sp.Integer(1)
+    low_value, high_value, free = lower, upper, sp.Le(sp.Abs(lower) + sp.Abs(upper), 0)
     for condition, bottom, top in fallback:
         given = sp.Gt(sp.Abs(lower) + sp.Abs(upper), 0)
         low_value = Select(given, lower, Select(condition, bottom, sp.Integer(0)) if condition != sp.true else bottom)
         high_value = Select(given, upper, Select(condition, top, sp.Integer(0)) if condition != sp.true else top)
-        free = Select(condition, sp.Integer(0), sp.Integer(1)) if condition != sp.true else sp.Integer(0)
+        free = sp.And(free, sp.Not(condition))
     return (
-        Let(unlimited, Select(open_ended, free, sp.Integer(0)), f"{key}: no limit"),
+        Let(unlimited, free, f"{key}: no limit"),
         Let(low, low_value),
         Let(high, high_value),
     )
@@ -233,7 +244,7 @@ def _limits(key: str, fallback: Fallback) -> tuple[Let, ...]:
 
 def _effective(key: str) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
     """The names of the lower and the upper limit, and of whether there is none."""
-    return real(f"effective_lower_{key}"), real(f"effective_upper_{key}"), real(f"unlimited_{key}")
+    return real(f"effective_lower_{key}"), real(f"effective_upper_{key}"), flag(f"unlimited_{key}")
 
 
 def _widened(key: str) -> tuple[Let, ...]:
@@ -242,8 +253,8 @@ def _widened(key: str) -> tuple[Let, ...]:
     tolerance = real(f"tolerance_{key}")
     return (
         Let(tolerance, LIMIT * (1 + sp.Abs(low) + sp.Abs(high))),
-        Let(real(f"lowest_{key}"), Select(sp.Gt(unlimited, 0), -UNLIMITED, low - tolerance)),
-        Let(real(f"highest_{key}"), Select(sp.Gt(unlimited, 0), UNLIMITED, high + tolerance)),
+        Let(real(f"lowest_{key}"), Select(unlimited, -UNLIMITED, low - tolerance)),
+        Let(real(f"highest_{key}"), Select(unlimited, UNLIMITED, high + tolerance)),
     )
 
 
@@ -251,23 +262,24 @@ def _limit_outputs(key: str) -> list[Output]:
     return [
         Output(f"lower_{key}", real(f"effective_lower_{key}")),
         Output(f"upper_{key}", real(f"effective_upper_{key}")),
-        Output(f"unlimited_{key}", real(f"unlimited_{key}")),
+        Output(f"unlimited_{key}", flag(f"unlimited_{key}")),
     ]
 
 
 def _window_outputs(key: str, *, has_turns: bool) -> list[Output]:
     words = ("lowest", "highest", "single", "mid") if has_turns else ("lowest", "highest")
-    return [Output(f"{word}_{key}", real(f"{word}_{key}")) for word in words]
+    named = {"single": flag}
+    return [Output(f"{word}_{key}", named.get(word, real)(f"{word}_{key}")) for word in words]
 
 
 def _turn_window(joint: Joint) -> tuple[Let, ...]:
     """Whether the axis has one value inside its limits at most, with a gap that no step crosses; and the middle of its range."""
     if not joint.multi_turn:
         return ()
-    low, high, unlimited = (real(f"{w}_{joint.key}") for w in ("effective_lower", "effective_upper", "unlimited"))
-    one_turn = sp.And(sp.Le(unlimited, 0), sp.Le(high - low, ONE_TURN + real(f"tolerance_{joint.key}")))
+    low, high, unlimited = _effective(joint.key)
+    one_turn = sp.And(sp.Not(unlimited), sp.Le(high - low, ONE_TURN + real(f"tolerance_{joint.key}")))
     return (
-        Let(real(f"single_{joint.key}"), Select(one_turn, sp.Integer(1), sp.Integer(0)), "one value inside the limits"),
+        Let(flag(f"single_{joint.key}"), one_turn, "one value inside the limits"),
         Let(real(f"mid_{joint.key}"), (low + high) / 2),
     )
 
@@ -277,38 +289,40 @@ def limits_of_axis() -> Program:
 
     own_unlimited own_lower own_upper, drive_limited drive_lower drive_upper → lowest highest single middle: both ends with
     their tolerance, whether one value is inside for every direction, and the middle. A drive that has not been heard of
-    has no limits: `drive_limited` is 0, and its ends are not looked at.
+    has no limits: `drive_limited` is false, and its ends are not looked at.
     """
     axis = rotary("axis", "any axis")
     low, high, unlimited = _effective(axis.key)
-    own_unlimited, own_lower, own_upper = (real(f"own_{word}") for word in ("unlimited", "lower", "upper"))
-    drive_limited, drive_lower, drive_upper = (real(f"drive_{word}") for word in ("limited", "lower", "upper"))
+    own_unlimited, own_lower, own_upper = flag("own_unlimited"), real("own_lower"), real("own_upper")
+    drive_limited, drive_lower, drive_upper = flag("drive_limited"), real("drive_lower"), real("drive_upper")
     own_low, own_high = real("own_low"), real("own_high")
-    has_drive = sp.Gt(drive_limited, 0)
     body: tuple[Statement, ...] = (
         Require(
-            sp.Or(sp.Le(drive_limited, 0), sp.Le(drive_lower, drive_upper)),
+            sp.Or(sp.Not(drive_limited), sp.Le(drive_lower, drive_upper)),
             Status.BAD_INPUT,
             reason=about_input(Why.DRIVE_LIMITS_CROSSED),
         ),
-        Let(own_low, Select(sp.Gt(own_unlimited, 0), -LARGEST, own_lower), "no axis value is larger in size"),
-        Let(own_high, Select(sp.Gt(own_unlimited, 0), LARGEST, own_upper)),
-        Let(low, Select(sp.And(has_drive, sp.Gt(drive_lower, own_low)), drive_lower, own_low), "the narrower of both"),
-        Let(high, Select(sp.And(has_drive, sp.Lt(drive_upper, own_high)), drive_upper, own_high)),
+        Let(own_low, Select(own_unlimited, -LARGEST, own_lower), "no axis value is larger in size"),
+        Let(own_high, Select(own_unlimited, LARGEST, own_upper)),
+        Let(low, Select(sp.And(drive_limited, sp.Gt(drive_lower, own_low)), drive_lower, own_low), "the narrower of both"),
+        Let(high, Select(sp.And(drive_limited, sp.Lt(drive_upper, own_high)), drive_upper, own_high)),
         Require(sp.Le(low, high), Status.NOT_INITIALIZED, reason=about_input(Why.NO_AXIS_VALUE)),
-        Let(unlimited, Select(has_drive, sp.Integer(0), own_unlimited)),
+        Let(unlimited, sp.And(sp.Not(drive_limited), own_unlimited)),
         *_widened(axis.key),
         *_turn_window(axis),
     )
-    plain = {real(f"{word}_{axis.key}"): real(name) for word, name in _OF_ANY_AXIS.items()}
+    plain = {called(f"{word}_{axis.key}", like): called(name, like) for word, (name, like) in _OF_ANY_AXIS.items()}
     named = tuple(renamed(rewritten(s, lambda e: e.xreplace(plain)), lambda name: plain.get(name, name)) for s in body)
-    outputs = tuple(Output(name, real(name)) for name in ("lowest", "highest", "single", "middle"))
+    outputs = (*(Output(name, real(name)) for name in ("lowest", "highest")), Output("single", flag("single")))
+    outputs = (*outputs, Output("middle", real("middle")))
     inputs = (own_unlimited, own_lower, own_upper, drive_limited, drive_lower, drive_upper)
     return verify(Program("limits_of_axis", inputs, named, outputs))
 
 
+_REAL, _FLAG = real("any_number"), flag("any_flag")
 _OF_ANY_AXIS = {
-    "effective_lower": "lower_end", "effective_upper": "upper_end", "unlimited": "unlimited", "tolerance": "tolerance",
-    "lowest": "lowest", "highest": "highest", "single": "single", "mid": "middle",
+    "effective_lower": ("lower_end", _REAL), "effective_upper": ("upper_end", _REAL), "unlimited": ("unlimited", _FLAG),
+    "tolerance": ("tolerance", _REAL), "lowest": ("lowest", _REAL), "highest": ("highest", _REAL), "single": ("single", _FLAG),
+    "mid": ("middle", _REAL),
 }  # fmt: skip
 """What the limits of one axis are called where it has no name."""

@@ -19,18 +19,28 @@ from derive.ir.constants import BOUNDARY, DAMPED, IMPROVEMENTS, MET, NEARLY
 from derive.ir.passes import assemble
 from derive.ir.primitives import Atan2, Root, Select
 from derive.ir.program import FindRoot, Iterate, Let, Output, Program, Require, Solve, Statement, Status, rewritten
-from derive.ir.symbols import COORDINATE_NAMES, FREED, FREED_ANGLE, ROTATION_ENTRIES, SCALE, TRIED, real
+from derive.ir.symbols import (
+    COORDINATE_NAMES,
+    FREED,
+    FREED_ANGLE,
+    ROTATION_ENTRIES,
+    SCALE,
+    TRIED,
+    count,
+    flag,
+    real,
+)
 from derive.kinematics.differential import jacobian_entries
 from derive.kinematics.trial_slopes import slope_name, with_slopes
 
 START = real("start")
-LOOKED_FOR = real("looked_for")
+LOOKED_FOR = flag("looked_for")
 GOAL = {real(c): real(f"goal_{c}") for c in COORDINATE_NAMES} | {r: real(f"goal_{r.name}") for r in ROTATION_ENTRIES}
 """The commanded pose, by the names that these programs give it."""
 FITS = "fits"
-FOUND = real("found")
+FOUND = flag("found")
 """Whether there is a root that fits."""
-_YES, _NO, _HALF = sp.Integer(1), sp.Integer(0), sp.Rational(1, 2)
+_ZERO = sp.Integer(0)
 
 
 @dataclass(frozen=True)
@@ -52,7 +62,7 @@ def try_program(trial: Trial) -> Program:
     left = Let(value, trial.value, "what is left of the closure")
     differentiated = with_slopes([*_roots_named(trial.statements), left, Let(guard, trial.guard)], TRIED)
     bound = {s.name for s in differentiated if isinstance(s, Let)}
-    slopes = [slope_name(n) if slope_name(n) in bound else _NO for n in (value, guard)]
+    slopes = [slope_name(n) if slope_name(n) in bound else _ZERO for n in (value, guard)]
     outputs = [Output("remainder", value), Output("slope", slopes[0]), Output("room", guard), Output("room_slope", slopes[1])]
     for number, angle in enumerate(trial.angles, 1):
         outputs += [Output(f"direction_{number}_cos", cosine(angle)), Output(f"direction_{number}_sin", sine(angle))]
@@ -64,7 +74,7 @@ def find_program(mechanism: Mechanism, trial: Program, finish: Program, argument
     """The root that fits and is nearest to the start."""
     names = (FOUND, *(real(o.name) for o in finish.outputs[1:]))
     note = f"the search along {mechanism.search.joint.name if mechanism.search else ''}"
-    found = FindRoot(trial, finish, START, sp.Gt(LOOKED_FOR, _HALF), names, tuple(arguments), note)
+    found = FindRoot(trial, finish, START, LOOKED_FOR, names, tuple(arguments), note)
     program = assemble("find_root", (found,), [Output(n.name, n) for n in names])
     return replace(program, summary="The joints at the root that is nearest to the start; zeros where none is looked for")
 
@@ -78,7 +88,7 @@ def finish_program(mechanism: Mechanism, trial: Trial, wanted: Sequence[sp.Expr]
     conditions = [sp.Le(error, MET), *(sp.Ge(w, -NEARLY) for w in wanted)]
     loop, jacobian = _newton(mechanism, [solved[j] for j in joints])
     last = Solve((), jacobian, (), determinant, "of the Jacobian there, positions in lengths of the machine")
-    fits = Let(real(FITS), Select(sp.And(*conditions), _YES, _NO))
+    fits = Let(flag(FITS), sp.And(*conditions))
     outputs = [Output(FITS, fits.name), *(Output(f"found_{j.name}", j) for j in joints)]
     program = assemble("finish_root", (*trial.statements, loop, last, fits), outputs)
     return replace(program, summary="The joints at a root, improved by Newton's method, and whether they are wanted")
@@ -98,12 +108,12 @@ def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tu
     errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(), 1)]
     names = [let.name for let in errors]
     steps = tuple(real(f"step_{j.name}") for j in joints)
-    error, size, passes = real("error"), real("size"), real("passes")
-    taken = real("taken")
+    error, size, passes = real("error"), real("size"), count("passes")
+    taken = flag("taken")
     rates, jacobian = _named_entries(scaled, len(joints))
     loop = Iterate(
         state=(*joints, passes),
-        start=(*start, _NO),
+        start=(*start, _ZERO),
         step=tuple(
             s
             for s in (
@@ -115,12 +125,12 @@ def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tu
                 *rates,
                 *_shortest_step(jacobian, names, steps),
                 Let(size, sp.Add(*[s**2 for s in steps])),
-                Let(taken, Select(sp.Le(size, error), _YES, _NO), "whether the error becomes smaller"),
+                Let(taken, sp.Le(size, error), "whether the error becomes smaller"),
             )
             if isinstance(s, Let | Solve)
         ),
-        following=(*(j + taken * s for j, s in zip(joints, steps, strict=True)), passes + 1),
-        done=sp.Or(sp.Le(error, BOUNDARY / 100), sp.Gt(passes, IMPROVEMENTS - _HALF), sp.Lt(taken, _HALF)),
+        following=(*(j + Select(taken, s, _ZERO) for j, s in zip(joints, steps, strict=True)), passes + 1),
+        done=sp.Or(sp.Le(error, BOUNDARY / 100), sp.Ge(passes, IMPROVEMENTS), sp.Not(taken)),
         limit=IMPROVEMENTS + 1,
         otherwise=Status.UNREACHABLE,
         note="Newton's method on the closure",
@@ -174,11 +184,11 @@ def trial_of(
     conditions: dict[sp.Expr, sp.Basic] = {}
     for number, (angle, free) in enumerate(angles):
         chosen = real(f"chosen_{angle.name}")
-        is_freed = sp.And(sp.Gt(FREED, number - _HALF), sp.Lt(FREED, number + _HALF))
+        is_freed = sp.Eq(FREED, number)
         found.append(Let(chosen, Select(is_freed, FREED_ANGLE, free), f"{angle.name}, where it is free"))
         for function in (sp.cos, sp.sin):
             choices[function(free)] = function(chosen)
-            conditions[function(free)] = sp.Or(sp.Lt(FREED, number - _HALF), sp.Gt(FREED, number + _HALF))
+            conditions[function(free)] = sp.Ne(FREED, number)
     for s in statements:
         if isinstance(s, Let):
             found.append(replace(s, value=_freed(s.value, choices, conditions)))

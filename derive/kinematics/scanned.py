@@ -34,6 +34,7 @@ from derive.ir.passes import assemble, renamed
 from derive.ir.primitives import (
     Atan2,
     Select,
+    ToReal,
 )
 from derive.ir.program import (
     Call,
@@ -56,6 +57,9 @@ from derive.ir.symbols import (
     SCALE,
     SIDE,
     TRIED,
+    called,
+    count,
+    flag,
     real,
 )
 from derive.kinematics.branch_assignment import Assignment, assign, steps_and_rest, with_branch_signs
@@ -79,9 +83,8 @@ from derive.kinematics.root_scan import (
 )
 from derive.kinematics.sampling import sample_axes, sample_machine
 
-SEARCHED = real("searched")
+SEARCHED = flag("searched")
 DETERMINANT = real("determinant")
-_HALF = sp.Rational(1, 2)
 _SAMPLES = 64
 
 
@@ -129,7 +132,7 @@ def searched_flag(mechanism: Mechanism) -> Let:
     """Whether the parameter is not zero."""
     assert mechanism.search is not None
     is_given = sp.Gt(sp.Abs(mechanism.search.where.symbol), 0)
-    return Let(SEARCHED, Select(is_given, sp.Integer(1), sp.Integer(0)), f"whether to search along {mechanism.search.joint.name}")
+    return Let(SEARCHED, is_given, f"whether to search along {mechanism.search.joint.name}")
 
 
 def branch_statements(both: Searching) -> tuple[Statement, ...]:
@@ -137,9 +140,8 @@ def branch_statements(both: Searching) -> tuple[Statement, ...]:
     mechanism = both.mechanism
     assert mechanism.search is not None
     crossing = next(b for b in mechanism.branches if b.is_crossing)
-    is_searched = sp.Gt(SEARCHED, _HALF)
     solved = with_branch_signs(both.closed.derivation.statements, both.closed_branches)
-    closed = _named_apart(_only(solved, is_searched), "closed")
+    closed = _named_apart(_only(solved, SEARCHED), "closed")
     program = search_of(both)
     arguments = _arguments(both, program)
     names = (FOUND, *(real(f"found_{j.symbol.name}") for j in mechanism.joints))
@@ -148,13 +150,13 @@ def branch_statements(both: Searching) -> tuple[Statement, ...]:
         searched_flag(mechanism),
         *closed,
         Require(
-            sp.Or(is_searched, sp.Gt(real(f"sigma_{crossing.name}"), 0)),
+            sp.Or(SEARCHED, sp.Gt(_sigma(crossing), 0)),
             Status.UNREACHABLE,
             reason=about_machine(Why.NO_SECOND_CROSSING),
         ),
         Call(program, arguments, names, f"{mechanism.search.joint.name}: where it meets what is left of the closure"),
-        Require(sp.Or(sp.Lt(SEARCHED, _HALF), sp.Gt(FOUND, _HALF)), Status.UNREACHABLE, reason=no_root),
-        *_chosen(both, is_searched),
+        Require(sp.Or(sp.Not(SEARCHED), FOUND), Status.UNREACHABLE, reason=no_root),
+        *_chosen(both),
     )
 
 
@@ -164,7 +166,7 @@ def _arguments(both: Searching, program: Program) -> tuple[tuple[sp.Symbol, sp.E
     assert mechanism.search is not None
     given: dict[sp.Symbol, sp.Expr] = {name: commanded for commanded, name in GOAL.items()}
     given |= {START: free(mechanism.search.joint), LOOKED_FOR: SEARCHED}
-    given |= {_wanted(b): real(f"sigma_{b.name}") for b in mechanism.branches}
+    given |= {_wanted(b): _sigma(b) for b in mechanism.branches}
     given |= {free(j): free(j) for j in mechanism.joints}
     return tuple((name, given[name]) for name in program.inputs if name in given)
 
@@ -193,9 +195,14 @@ def search_of(both: Searching) -> Program:
     return find_program(mechanism, try_program(trial), finish, arguments)
 
 
+def _sigma(branch: Branch) -> sp.Symbol:
+    """The sign of a branch."""
+    return count(f"sigma_{branch.name}")
+
+
 def _wanted(branch: Branch) -> sp.Symbol:
-    """The sign of a branch, as an argument of the search."""
-    return real(f"wanted_{branch.name}")
+    """The same as an argument of the search."""
+    return count(f"wanted_{branch.name}")
 
 
 def _margins_wanted(both: Searching) -> list[sp.Expr]:
@@ -205,14 +212,14 @@ def _margins_wanted(both: Searching) -> list[sp.Expr]:
     found = []
     for b in (b for b in mechanism.branches if not b.is_crossing):
         value = with_fixed_names(mechanism, b.indicator * b.signs[0])
-        found.append(_wanted(b) * value / (SCALE if _is_length(mechanism, b) else 1))
+        found.append(ToReal(_wanted(b)) * value / (SCALE if _is_length(mechanism, b) else 1))
     lets, values = named_trigonometry(mechanism, found)
     known = {let.name: let.value for let in lets}
     values = [v.xreplace(known).xreplace(functions) for v in values]
     crossing = next(b for b in mechanism.branches if b.is_crossing)
     slope = _orientation(both) * DETERMINANT * _determinant_scale(both)
-    signs = sp.Mul(*[_wanted(a.branch) for a in both.trial_branches])
-    return [*values, _wanted(crossing) * signs * slope]
+    signs = sp.Mul(_wanted(crossing), *[_wanted(a.branch) for a in both.trial_branches])
+    return [*values, ToReal(signs) * slope]
 
 
 def _is_length(mechanism: Mechanism, branch: Branch) -> bool:
@@ -221,12 +228,12 @@ def _is_length(mechanism: Mechanism, branch: Branch) -> bool:
     return bool(sp.sympify(branch.indicator).subs(gone) == 0)
 
 
-def _chosen(both: Searching, is_searched: sp.Basic) -> Iterable[Let]:
+def _chosen(both: Searching) -> Iterable[Let]:
     """The angle of every joint, found or in closed form."""
     for joint in both.mechanism.joints:
         name = joint.symbol.name
         closed = Atan2(real(f"{sine(joint.symbol).name}_closed"), real(f"{cosine(joint.symbol).name}_closed"))
-        yield Let(joint.symbol, Select(is_searched, real(f"found_{name}"), closed))
+        yield Let(joint.symbol, Select(SEARCHED, real(f"found_{name}"), closed))
 
 
 def _trial(both: Searching) -> Trial:
@@ -258,7 +265,7 @@ def _indicators(both: Searching) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
 def _named_apart(statements: Iterable[Statement], word: str, own: Container[sp.Symbol] = ()) -> tuple[Statement, ...]:
     """The statements with the word behind every name that they bind, but for own names."""
     kept = list(statements)
-    table = {n: n if n in own else real(f"{n.name}_{word}") for s in kept for n in binds(s)}
+    table = {n: n if n in own else called(f"{n.name}_{word}", n) for s in kept for n in binds(s)}
     return tuple(renamed(rewritten(s, lambda e: e.xreplace(table)), lambda n: table[n]) for s in kept)
 
 
@@ -270,7 +277,6 @@ def _only(statements: Iterable[Statement], otherwise: sp.Basic) -> tuple[Stateme
 def margin_statements(both: Searching) -> tuple[tuple[Statement, ...], tuple[Let, ...]]:
     """At axis values: the statements and `branch_<name>` of every branch."""
     mechanism = both.mechanism
-    is_searched = sp.Gt(SEARCHED, _HALF)
     statements: list[Statement] = [searched_flag(mechanism), *both.forward.statements]
     own = {name for s in both.forward.statements for name in binds(s)}
     margins: dict[str, dict[str, sp.Expr]] = {}
@@ -288,20 +294,18 @@ def margin_statements(both: Searching) -> tuple[tuple[Statement, ...], tuple[Let
     determinant, scaled = determinant_margin(both)
     statements += determinant
     found = [
-        Let(real(f"branch_{name}"), Select(is_searched, both_values["tried"], both_values["closed"]))
+        Let(real(f"branch_{name}"), Select(SEARCHED, both_values["tried"], both_values["closed"]))
         for name, both_values in margins.items()
     ]
-    return tuple(statements), (*found, _crossing_margin(both, scaled, margins, is_searched))
+    return tuple(statements), (*found, _crossing_margin(both, scaled, margins))
 
 
-def _crossing_margin(
-    both: Searching, determinant: sp.Expr, margins: dict[str, dict[str, sp.Expr]], is_searched: sp.Basic
-) -> Let:
+def _crossing_margin(both: Searching, determinant: sp.Expr, margins: dict[str, dict[str, sp.Expr]]) -> Let:
     crossing = next(b for b in both.mechanism.branches if b.is_crossing)
     slope = _orientation(both) * determinant
     for a in both.trial_branches:
         slope = slope * Select(sp.Ge(margins[a.branch.name]["tried"], 0), sp.Integer(1), sp.Integer(-1))
-    return Let(real(f"branch_{crossing.name}"), Select(is_searched, slope, sp.Integer(1)))
+    return Let(real(f"branch_{crossing.name}"), Select(SEARCHED, slope, sp.Integer(1)))
 
 
 def determinant_margin(both: Searching) -> tuple[tuple[Statement, ...], sp.Expr]:

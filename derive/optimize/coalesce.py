@@ -22,7 +22,7 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
-    real,
+    called,
     symbols_of,
 )
 from derive.optimize.control_flow import Arms, Item
@@ -70,7 +70,7 @@ def _shortest(
 
 def _with_last_words(name: sp.Symbol, signs: Sequence[Sign], kept: int) -> sp.Symbol:
     stem, found = without_words(name.name, signs)
-    return real("_".join([stem, *found[max(0, len(found) - kept) :]]))
+    return called("_".join([stem, *found[max(0, len(found) - kept) :]]), name)
 
 
 def _bound(item: Item) -> Iterator[sp.Symbol]:

@@ -30,6 +30,7 @@ from derive.ir.program import (
     reads,
 )
 from derive.ir.symbols import (
+    is_condition,
     names_in,
 )
 
@@ -304,9 +305,9 @@ def _simplified(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:
         value = let.value.xreplace(aliases)
         if value in known:
             value = known[value]
-        elif -value in known:
+        elif not is_condition(value) and -value in known:
             value = -known[-value]
-        if let.name not in results and (value.is_Symbol or value.is_Number or (-value).is_Symbol):
+        if let.name not in results and (value.is_Symbol or value.is_Number or (not is_condition(value) and (-value).is_Symbol)):
             aliases[let.name] = value
             continue
         if not value.is_Symbol and not value.is_Number:

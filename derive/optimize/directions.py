@@ -34,6 +34,7 @@ from derive.ir.program import (
     told,
 )
 from derive.ir.symbols import (
+    is_condition,
     symbols_of,
 )
 
@@ -165,7 +166,7 @@ def _divided(program: Program) -> tuple[tuple[frozenset[sp.Symbol], sp.Symbol], 
     """The names that are quotients by one length, on the first side of a choice or always."""
     found: dict[tuple[sp.Basic, sp.Symbol], list[sp.Symbol]] = {}
     lengths = lengths_of(program)
-    for let in program.lets():
+    for let in (let for let in program.lets() if not is_condition(let.value)):
         condition, value = (let.value.args[0], let.value.args[1]) if isinstance(let.value, Select) else (sp.true, let.value)
         for factor in sp.Mul.make_args(value):
             if 1 / factor in lengths:

@@ -21,6 +21,7 @@ from derive.ir.program import (
     Statement,
 )
 from derive.ir.symbols import (
+    is_condition,
     symbols_of,
 )
 from derive.optimize.directions import plain_directions
@@ -91,7 +92,7 @@ def _without_signs(program: Program) -> Program:
     """Names that are read only as their negatives are bound as these."""
     values = {let.name: let for let in program.lets()}
     for let in program.lets():
-        source = values.get(-let.value) if (-let.value).is_Symbol else None
+        source = values.get(-let.value) if not is_condition(let.value) and (-let.value).is_Symbol else None
         if source is not None and is_read_once(program, source.name):
             changed = Let(let.name, sp.expand(-source.value), let.note or source.note)
             body = [changed if s == let else s for s in program.body if s != source]

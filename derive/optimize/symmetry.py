@@ -30,6 +30,7 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
+    is_condition,
     real,
     symbols_of,
 )
@@ -84,6 +85,8 @@ class _Finder:
     def _chosen(self, let: Let, condition: sp.Basic, known: dict[sp.Basic, sp.Expr]) -> tuple[Statement, ...]:
         """The choice between the twin and the value, where there is a twin if the condition holds."""
         there = let.value.xreplace(known)
+        if is_condition(there):
+            return ()
         for sign, value in ((1, there), (-1, _negative(there))):
             if value in self.values:
                 known[let.name] = sign * self.values[value]

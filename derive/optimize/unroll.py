@@ -41,6 +41,9 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
+    called,
+    count,
+    is_condition,
     real,
 )
 from derive.ir.verify import BrokenProgram
@@ -103,7 +106,7 @@ def unroll(program: Program, signs: Sequence[Sign]) -> Program:
 
 def with_limits(branch: Program, limits: Program) -> Program:
     """One branch, then its limits. What the limits bind gets names of its own."""
-    own = {name: real(f"limit_{name.name}") for name in limits.bound()}
+    own = {name: called(f"limit_{name.name}", name) for name in limits.bound()}
     values = {**own, **{real(o.name): o.value for o in branch.outputs}}
     checks = [rewritten(renamed(s, lambda n: own[n]), lambda e: e.xreplace(values)) for s in limits.body]
     return assemble(branch.name, (*branch.body, *checks), branch.outputs)
@@ -162,7 +165,7 @@ class _Unroller:
             if isinstance(changed, Let):
                 self._names[changed.name, choice] = self._bound(changed, support, choice)
                 continue
-            names = {name: self._fresh(name.name, support, choice) for name in binds(statement)}
+            names = {name: self._fresh(name, support, choice) for name in binds(statement)}
             self.body.append(renamed(changed, names.__getitem__))
             self._names |= {(name, choice): new for name, new in names.items()}
         self._support |= dict.fromkeys(binds(statement), support)
@@ -201,12 +204,14 @@ class _Unroller:
             earlier = before.values[tuple(full[i] for i in before.support)]
             fails = Select(holds, sp.Integer(0), sp.Integer(list(Status).index(status)))
             value = fails if earlier == 0 else Select(sp.Gt(earlier, 0), earlier, fails)
-            values[choice] = self._bound(Let(real(REFUSAL), value, ", ".join(notes)), joint, choice)
+            values[choice] = self._bound(Let(count(REFUSAL), value, ", ".join(notes)), joint, choice)
         return _Refusal(joint, values, status if before.status in (None, status) else Status.OK)
 
     def _bound(self, let: Let, support: tuple[int, ...], choice: Choice) -> sp.Expr:
         """The name of a value, bound unless the value or its negative has a name already."""
         value = self._without_repetition(let, support, choice)
+        if is_condition(value):
+            return self._known[value] if value in self._known else self._named(let, value, value, support, choice)
         if value.is_Symbol or value.is_Number or (-value).is_Symbol:
             return value
         key = self._written_out(value)
@@ -214,7 +219,10 @@ class _Unroller:
             return self._known[key]
         if -key in self._known:
             return -self._known[-key]
-        name = self._fresh(let.name.name, support, choice)
+        return self._named(let, key, value, support, choice)
+
+    def _named(self, let: Let, key: sp.Basic, value: sp.Basic, support: tuple[int, ...], choice: Choice) -> sp.Symbol:
+        name = self._fresh(let.name, support, choice)
         self._known[key] = name
         self._values_of[name] = value
         self.body.append(replace(let, name=name, value=value))
@@ -250,13 +258,13 @@ class _Unroller:
             if set(own) <= set(support)
         }
 
-    def _fresh(self, name: str, support: tuple[int, ...], choice: Choice) -> sp.Symbol:
-        return self.taken.fresh(suffixed(name, [self.signs[i] for i in support], choice))
+    def _fresh(self, name: sp.Symbol, support: tuple[int, ...], choice: Choice) -> sp.Symbol:
+        return self.taken.fresh(suffixed(name.name, [self.signs[i] for i in support], choice), name)
 
 
 def _is_negative(statement: Statement) -> bool:
     """Whether a value has a minus in front: its opposite is named rather, so that it is taken without one."""
-    return isinstance(statement, Let) and bool(statement.value.could_extract_minus_sign())
+    return isinstance(statement, Let) and not is_condition(statement.value) and bool(statement.value.could_extract_minus_sign())
 
 
 @dataclass(frozen=True)

@@ -21,13 +21,14 @@ from derive.ir.program import (
     reads,
 )
 from derive.ir.symbols import (
+    is_condition,
     symbols_of,
 )
 
 
 def turnless(program: Program) -> frozenset[sp.Symbol]:
     """The names that are such angles, in radians."""
-    found = {let.name for let in program.lets()}
+    found = {let.name for let in program.lets() if not is_condition(let.value)}
     wanted = {s for o in program.outputs for s in symbols_of(o.value)}
     while True:
         kept = found - wanted - {s for statement in program.body for s in _counted(statement, found)}

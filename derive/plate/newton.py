@@ -52,6 +52,7 @@ from derive.ir.symbols import (
     SCALE,
     START_POSITION,
     START_ROTATION,
+    flag,
     real,
 )
 from derive.plate.legs import (
@@ -126,18 +127,18 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
     within = real("within")
     bases = _bases(mechanism)
     fits = sp.And(*[sp.Le(sp.Abs(of("error", rod)), within) for rod in mechanism.rods])
-    fit, fitted, half = real("fit"), real("fitted"), sp.Rational(1, 2)
+    fit, fitted = flag("fit"), flag("fitted")
     rotation = sp.Matrix(3, 3, _TURN) * sp.Matrix(3, 3, START_ROTATION)
     loop = Iterate(
         state=(*pose, fitted),
-        start=(*START_POSITION, *[sp.Integer(0)] * 4),
+        start=(*START_POSITION, *[sp.Integer(0)] * 3, sp.false),
         step=(
             *_pass(mechanism, bases),
-            Let(fit, Select(fits, sp.Integer(1), sp.Integer(0)), "whether the rods fit"),
+            Let(fit, fits, "whether the rods fit"),
             *_step(mechanism),
         ),
         following=(*(s + real(f"{s.name}_rate") / real("stretch") for s in pose), fit),
-        done=sp.And(sp.Gt(fit, half), sp.Gt(fitted, half)),
+        done=sp.And(fit, fitted),
         limit=LIMIT,
         otherwise=Status.IMPOSSIBLE,
         note="Newton's method: every pass improves the pose until the rods fit",

@@ -15,7 +15,7 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
-    real,
+    called,
 )
 from derive.ir.verify import BrokenProgram
 
@@ -107,7 +107,7 @@ class Ledger:
             number += 1
             name = f"{proposal.name}_{number}"
         self._names.add(name)
-        return proposal if name == proposal.name else real(name)
+        return proposal if name == proposal.name else called(name, proposal)
 
 
 def _renamed(slope: Slope, names: Mapping[sp.Symbol, sp.Expr]) -> Slope:

@@ -36,6 +36,7 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
+    flag,
     real,
 )
 
@@ -235,7 +236,8 @@ def _cosine_of(value: sp.Expr) -> sp.Expr:
 def _bound(measure: Measure, condition: _Condition, names: dict[sp.Symbol, sp.Symbol]) -> list[Let]:
     """Cosine and sine after the motion, where it is needed and costs no more than rounding."""
     word, before = condition.word, [names[f(measure.angle)] for f in (cosine, sine)]
-    value, size, moved, costs, stays = (real(f"{name}_{word}") for name in ("value", "size", "moved", "cost", "stays"))
+    value, size, moved, costs = (real(f"{name}_{word}") for name in ("value", "size", "moved", "cost"))
+    stays = flag(f"stays_{word}")
     after = [sp.cos(moved), sp.sin(moved)]
     names_after = [real(f"{f(measure.angle).name}_after_{word}") for f in (cosine, sine)]
     share = measure.value / measure.scale
@@ -246,11 +248,11 @@ def _bound(measure: Measure, condition: _Condition, names: dict[sp.Symbol, sp.Sy
     return [
         *(Let(n, v) for n, v in zip(names_after, after, strict=True)),
         Let(costs, share * chord, "what the motion changes of the pose"),
-        Let(stays, Select(dear, sp.Integer(1), sp.Integer(0))),
+        Let(stays, dear),
         *(
             Let(
                 f(measure.angle),
-                Select(reached, b, Select(beyond, b, Select(sp.Gt(stays, 0), b, a))),
+                Select(reached, b, Select(beyond, b, Select(stays, b, a))),
                 "kept where the rest can be reached",
             )
             for f, a, b in zip((cosine, sine), names_after, before, strict=True)

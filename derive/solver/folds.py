@@ -42,6 +42,7 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     SCALE,
+    flag,
     real,
 )
 from derive.solver.sweeps import WAYS, Sweep, sweep_of, swept
@@ -201,7 +202,7 @@ def _taken(later: _Later, *, is_swept: bool) -> tuple[Let, ...]:
     chosen = [later.name(f"turned_{word}") for word in ("cost", "ahead", "cos", "sin")]
     if is_swept:
         others = [later.name(f"swept_{word}") for word in ("cost", "ahead", "cos", "sin")]
-        chosen = [Select(sp.Gt(later.name("follows"), 0), b, a) for a, b in zip(chosen, others, strict=True)]
+        chosen = [Select(flag(later.name("follows").name), b, a) for a, b in zip(chosen, others, strict=True)]
     note = "turned within rounding, where the rest can be reached"
     return (
         *(Let(n, c) for n, c in zip(bests, chosen, strict=True)),

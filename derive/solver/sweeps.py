@@ -32,6 +32,7 @@ from derive.ir.program import (
     Let,
 )
 from derive.ir.symbols import (
+    flag,
     real,
 )
 from derive.solver.feasible_arc import nearest_on_arc
@@ -130,7 +131,7 @@ def _follows(sweep: Sweep, names: Mapping[sp.Symbol, sp.Expr], rates: Mapping[sp
     square = real(f"turn_{word}") ** 2
     dx, dy = (rates[part].xreplace(dict(names)) for part in sweep.parts)
     is_far = sp.Gt(square, BOUNDARY) | sp.Gt(square * (dx**2 + dy**2), BOUNDARY * names[sweep.length] ** 2)
-    return Let(real(f"follows_{word}"), Select(is_far, sp.Integer(1), sp.Integer(0)), f"1 where it follows {sweep.angle.name}")
+    return Let(flag(f"follows_{word}"), is_far, f"whether it follows {sweep.angle.name}")
 
 
 def _followed(sweep: Sweep, u: sp.Symbol, before: Row, way: str, word: str) -> tuple[Let, ...]:

@@ -31,7 +31,7 @@ def _memory_of_reals(of: types.Type) -> bool:
 def common(left: types.Type, right: types.Type) -> types.Type | None:
     """The type in which two numbers meet, or None."""
     if isinstance(left, types.IntegerLiteral) and isinstance(right, types.IntegerLiteral):
-        return types.DINT
+        return types.INT if fits(left, types.INT) and fits(right, types.INT) else types.DINT
     if fits(left, right):
         return right
     return left if fits(right, left) else None

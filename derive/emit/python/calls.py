@@ -64,7 +64,9 @@ def _given(name: sp.Symbol) -> str:
 
 
 def _values(call: Call, printer: ScalarPrinter) -> str:
-    return f"({''.join(f'{printer.print(value)}, ' for value in call.arguments).rstrip()})"
+    values = dict(call.given)
+    arguments = [printer.value(name, values[name]) for name in call.program.inputs if name in values]
+    return f"({''.join(f'{text}, ' for text in arguments).rstrip()})"
 
 
 def _taken(call: Call, source: str) -> list[str]:

@@ -24,12 +24,12 @@ def solve_lines(system: Solve, printer: ScalarPrinter) -> list[str]:
 
 def scalar_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     """The start, and the beginning of the loop."""
-    return _head(loop, ", ".join(printer.print(value) for value in loop.start))
+    return _head(loop, ", ".join(_values(loop, loop.start, printer)))
 
 
 def array_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     """The same; the start may be one for all rows."""
-    return _head(loop, f"initial({', '.join(printer.print(value) for value in loop.start)})")
+    return _head(loop, f"initial({', '.join(_values(loop, loop.start, printer))})")
 
 
 def _head(loop: Iterate, start: str) -> list[str]:
@@ -50,7 +50,7 @@ def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -
 def array_end(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     """Leave the loop when every row is done; the rows that are done keep their state while the others go on."""
     state = ", ".join(_names(loop.state))
-    following = [f"{printer.print(value)}," for value in loop.following]
+    following = [f"{value}," for value in _values(loop, loop.following, printer)]
     return [
         *_indented([*fold(f"done = {printer.print(loop.done)}"), "if settled(done, status):", "    break"]),
         *_indented([f"{state} = advanced(", "    done,", f"    ({state}),", "    (", *_indented(following, 2), "    ),", ")"]),
@@ -61,9 +61,14 @@ def array_end(loop: Iterate, printer: ScalarPrinter) -> list[str]:
 def _assignments(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     return [
         line
-        for name, value in zip(_names(loop.state), loop.following, strict=True)
-        for line in fold(f"{name} = {printer.print(value)}")
+        for name, value in zip(_names(loop.state), _values(loop, loop.following, printer), strict=True)
+        for line in fold(f"{name} = {value}")
     ]
+
+
+def _values(loop: Iterate, values: Sequence[sp.Basic], printer: ScalarPrinter) -> list[str]:
+    """What the state becomes."""
+    return [printer.value(name, value) for name, value in zip(loop.state, values, strict=True)]
 
 
 def _names(symbols: Sequence[sp.Symbol]) -> list[str]:

@@ -142,7 +142,7 @@ def _measures(kin: Kinematics) -> tuple[Shape, ...]:
 
 def _choice(kin: Kinematics) -> tuple[Argument, ...]:
     return (
-        Argument("signs", "Reals", tuple(f"sigma_{b.name}" for b in kin.branches)),
-        Argument("turns", "Reals", tuple(j.turn.name for j in kin.period_joints)),
+        Argument("signs", "Signs", tuple(f"sigma_{b.name}" for b in kin.branches)),
+        Argument("turns", "Turns", tuple(j.turn.name for j in kin.period_joints)),
         Argument("reference", "Reals", tuple(j.reference.name for j in kin.mechanism.joints)),
     )

@@ -83,8 +83,8 @@ _EXPORTS = (
     "Axis", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "KinematicsError", "Mechanism", "OrientationImage",
     "Parameter", "Singularity", "Solution", "Status", "catalogue",
 )  # fmt: skip
-_ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Vector", "passed", "require")
-_ARRAY_HELPERS = ("Real", "atan2", "degrees", "elsewhere", "refused", "root", "sqrt")
+_ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Signs", "Turns", "Vector", "passed", "require")
+_ARRAY_HELPERS = ("Real", "atan2", "degrees", "elsewhere", "opposite", "refused", "root", "sqrt")
 """What programs on arrays call or name, depending on how an expression is spelled."""
 _CHUNK = 8192
 """Rows of a batch at a time: 64 KiB an array."""
@@ -251,7 +251,7 @@ def _core(kin: Kinematics) -> Sequence[str]:
 
 def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
     kinds = {m.kind for m in used if m.kind} | {a.kind for m in used for a in m.arguments}
-    lean = {"PlainFrame", "Reals", "Rotation", "Vector"} if can_be_unrolled(kin) else set()
+    lean = {"PlainFrame", "Reals", "Rotation", "Signs", "Vector"} if can_be_unrolled(kin) else set()
     lean |= {"ConfigurationByte"} if kin.configuration_size else set()
     lean |= {"Axis"} if kin.mechanism.joints else set()
     return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Diagnosis", "Parameter", "Reals", "Status"} | lean)
@@ -282,7 +282,7 @@ def _array_head(method: Method) -> list[str]:
 def _every_head(method: Method) -> list[str]:
     """The unrolled branches are told the signs of the slots, as any other programs, and know them."""
     arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
-    return fold(f"def {method.name}(self{arguments}, signs: Sequence[Reals]) -> {method.kind}:", 4)
+    return fold(f"def {method.name}(self{arguments}, signs: Sequence[Signs]) -> {method.kind}:", 4)
 
 
 def _sorted(found: set[str]) -> list[str]:

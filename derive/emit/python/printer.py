@@ -23,7 +23,7 @@ from derive.optimize.inline import Grouped
 TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
-    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "refused", "no_offsets",
+    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "refused", "no_offsets", "opposite",
 }  # fmt: skip
 """Names that a generated method uses for itself."""
 ARRAY_NAMES = {"abs": "absolute"}
@@ -87,7 +87,7 @@ class ScalarPrinter(ExpressionPrinter):
             return self._spell(node.args[0])
         if self.is_trusted and node.is_Mul and 1 / DEGREE in node.args:
             return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
-        if isinstance(node, sp.LessThan) and isinstance(node.lhs, sp.Abs) and node.lhs.args[0].is_Symbol and node.rhs.is_Number:
+        if isinstance(node, sp.LessThan) and isinstance(node.lhs, sp.Abs) and node.lhs.args[0].is_Symbol and node.rhs.is_positive:
             bound, value = self.print(node.rhs), self.print(node.lhs.args[0])
             return f"-{bound} <= {value} <= {bound}", COMPARE
         if isinstance(node, Select) and isinstance(node.args[1], Root) and node.args[0] == sp.Gt(node.args[1].args[0], 0):
@@ -125,6 +125,8 @@ class ArrayPrinter(ScalarPrinter):
     """Arrays: a choice evaluates both arms, and conditions are masks."""
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if isinstance(node, sp.Not):
+            return f"opposite({self.print(node.args[0])})", ATOM
         if isinstance(node, Root) and is_sum_of_squares(node.args[0]):
             return f"sqrt({self.print(node.args[0])})", ATOM
         if self.modulo_turns and node.is_Mul and len(node.args) == 2 and 1 / DEGREE in node.args:

@@ -23,6 +23,7 @@ from derive.ir.passes import told_in
 from derive.ir.primitives import (
     NearestPeriod,
     Select,
+    ToReal,
 )
 from derive.ir.program import (
     Call,
@@ -34,6 +35,7 @@ from derive.ir.program import (
     Solve,
     binds,
     expressions,
+    rewritten,
     told,
 )
 from derive.ir.symbols import (
@@ -41,6 +43,7 @@ from derive.ir.symbols import (
     real,
     symbols_of,
 )
+from derive.ir.verify import verify
 from derive.optimize.control_flow import Arms, Item, in_arms, spared
 
 Shape = str | tuple["Shape", ...]
@@ -97,6 +100,7 @@ def scalar_body(method: Method, refusals: Refusals = PLAIN) -> list[str]:
 
 def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """The statements of a program on plain numbers."""
+    program = without_conversions(program)
     wanted = [o.value for o in program.outputs]
     items = spared(in_arms(program.body, wanted), wanted)
     return item_lines(_told(items, program), refusals, printer)
@@ -195,7 +199,7 @@ def array_statements(method: Method) -> list[str]:
     if not method.is_shared:
         first = method.arguments[0]
         lines.append(f"status = passed({first.name}{'[0]' if first.kind == 'Rotation' else ''})")
-    program = method.program
+    program = without_conversions(method.program)
     constants = fixed(program.body, {real(name) for name in constants_of(method)})
     for item, same in grouped(in_arms(program.body, [o.value for o in program.outputs])):
         if isinstance(item, Iterate):
@@ -249,6 +253,14 @@ def has_system(program: Program) -> bool:
     return any(isinstance(s, Solve) for s in inner)
 
 
+def without_conversions(program: Program) -> Program:
+    """The program with whole numbers where they multiply: Python converts them by itself."""
+    own = {let.name: let.value for let in program.lets() if isinstance(let.value, ToReal) and let.value.args[0].is_Symbol}
+    body = [rewritten(s, lambda e: e.xreplace(own)) for s in program.body if not (isinstance(s, Let) and s.name in own)]
+    outputs = tuple(replace(o, value=o.value.xreplace(own)) for o in program.outputs)
+    return verify(replace(program, body=tuple(body), outputs=outputs)) if own else program
+
+
 def binding_lines(statement: Let | Solve, printer: ScalarPrinter) -> list[str]:
     """A statement that binds names and refuses nothing."""
     return let_lines(statement, printer) if isinstance(statement, Let) else solve_lines(statement, printer)
@@ -261,8 +273,8 @@ def _step(loop: Iterate, printer: ScalarPrinter) -> list[str]:
 
 def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
     """A binding, with the step of the derivation behind it or before it."""
-    value = printer.print(let.value)
-    if isinstance(let.value, Select) and value.startswith("("):
+    value = printer.value(let.name, let.value)
+    if isinstance(let.value, Select | ToReal) and value.startswith("("):
         value = value[1:-1]
     line = f"{spelled(let.name.name)} = {value}"
     if let.comment and len(line) + len(let.comment) + 4 <= WIDTH:

@@ -16,11 +16,13 @@ from derive.ir.program import (
     Iterate,
     Require,
 )
+from derive.ir.types import Type, type_of
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import limited_keys
 
 _PRINTER = ScalarPrinter()
 _TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
+_KINDS = {Type.BOOL: "bool", Type.INT: "int"}
 
 
 def keywords(parameters: tuple[Parameter, ...]) -> list[str]:
@@ -36,7 +38,8 @@ def accepted(parameters: tuple[Parameter, ...]) -> list[str]:
 
 def setup_head(parameters: tuple[Parameter, ...]) -> list[str]:
     """The head of the setup function."""
-    return fold(f"def _setup(self, {', '.join(f'{spelled(p.name)}: float' for p in parameters)}) -> Constants:")
+    typed = (f"{spelled(p.name)}: {_TYPES.get(p.role, 'float')}" for p in parameters)
+    return fold(f"def _setup(self, {', '.join(typed)}) -> Constants:")
 
 
 def setup_body(kin: Kinematics) -> list[str]:
@@ -51,9 +54,9 @@ def setup_body(kin: Kinematics) -> list[str]:
     return [*lines, *fold(f"return Constants({', '.join(values)})")]
 
 
-def constants(kin: Kinematics) -> list[str]:
-    """The names of the constants."""
-    return [spelled(output.name) for output in kin.setup.outputs]
+def constants(kin: Kinematics) -> dict[str, str]:
+    """The constants with their types."""
+    return {spelled(o.name): _KINDS.get(type_of(o.value), "float") for o in kin.setup.outputs}
 
 
 def tested_limits(kin: Kinematics) -> list[str]:

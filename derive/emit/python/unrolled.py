@@ -18,6 +18,7 @@ from derive.emit.python.program import (
     item_lines,
     let_lines,
     unpacked,
+    without_conversions,
 )
 from derive.emit.python.refusal import Refusals
 from derive.ir.passes import untold
@@ -27,6 +28,7 @@ from derive.ir.program import (
     Status,
 )
 from derive.ir.symbols import (
+    count,
     real,
     symbols_of,
 )
@@ -91,7 +93,7 @@ def can_be_unrolled(kin: Kinematics) -> bool:
 
 def signs(kin: Kinematics) -> tuple[Sign, ...]:
     """The branch signs, with the names of the two branches."""
-    return tuple(Sign(real(f"sigma_{b.name}"), b.names) for b in kin.branches)
+    return tuple(Sign(count(f"sigma_{b.name}"), b.names) for b in kin.branches)
 
 
 def every_branch(kin: Kinematics) -> Program:
@@ -116,10 +118,11 @@ def array_method(kin: Kinematics) -> Method:
 
 def array_lines(kin: Kinematics, method: Method) -> list[str]:
     """Its body."""
-    values = {o.name: _ARRAY.print(o.value) for o in method.program.outputs}
+    found = {o.name: o.value for o in method.program.outputs}
     lines = array_statements(method)
-    refusals = [values[suffixed(REFUSAL, signs(kin), choice)] for choice in choices(len(kin.branches))]
-    statuses = {refusal: f"status{refusal.removeprefix(REFUSAL)}" if refusal != "0.0" else "status" for refusal in refusals}
+    refusals = [_ARRAY.whole(found[suffixed(REFUSAL, signs(kin), choice)]) for choice in choices(len(kin.branches))]
+    values = {name: _ARRAY.print(value) for name, value in found.items() if not name.startswith(REFUSAL)}
+    statuses = {refusal: f"status{refusal.removeprefix(REFUSAL)}" if refusal != "0" else "status" for refusal in refusals}
     lines += [f"{status} = refused(status, {refusal})" for refusal, status in statuses.items() if status != "status"]
     lines.append("return (")
     for choice, refusal in zip(choices(len(kin.branches)), refusals, strict=True):
@@ -173,7 +176,7 @@ def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
     return (
         Method(
             "every_branch", "Every slot: its axes, or the number of its status.", every_branch(kin),
-            (position, rotation, reference), "tuple[Reals | float, ...]", (),
+            (position, rotation, reference), "tuple[Reals | int, ...]", (),
         ),
         Method(
             "branches", "Every slot, the axes in some turn, of input that is trusted.", branches(kin, one),
@@ -199,7 +202,7 @@ def _refusals(answer: Callable[[Status], str]) -> Refusals:
 def _slots(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
     """The checked function."""
     count = 2 ** len(kin.branches)
-    refusals = _refusals(lambda status: repeated(f"{list(Status).index(status)}.0", count))
+    refusals = _refusals(lambda status: repeated(f"{list(Status).index(status)}", count))
     written = _Written.of(method, known)
     return written.function(_every(kin, written, refusals, _SCALAR, lambda refusal: refusal))
 
@@ -238,6 +241,7 @@ class _Written:
     @classmethod
     def of(cls, method: Method, known: Sequence[Let]) -> _Written:
         """known: what the constants are that it reads."""
+        method = replace(method, program=without_conversions(method.program))
         wanted = [o.value for o in method.program.outputs]
         items = spared(in_arms(guarded(method.program.body, known), wanted), wanted)
         items, values = written_where_read(items, wanted)
@@ -267,7 +271,7 @@ def _returned(kin: Kinematics, values: Mapping[str, sp.Expr], refused: Callable[
         axes = tuple_of([_DIRECTIONS.print(values[suffixed(j.axis.name, signs(kin), choice)]) for j in kin.mechanism.joints])
         text = axes
         if refusal != 0:
-            text = f"{axes} if {_SCALAR.print(refusal)} == 0.0 else {refused(_SCALAR.print(refusal))}"
+            text = f"{axes} if {_SCALAR.whole(refusal)} == 0 else {refused(_SCALAR.whole(refusal))}"
         lines += fold(f"({text})," if refusal != 0 else f"{text},", 4)
     return [*lines, ")"]
 

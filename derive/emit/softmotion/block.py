@@ -10,7 +10,7 @@ from derive.emit.softmotion.inputs import Input, parameter_input
 from derive.emit.softmotion.settings import SETTINGS, Settings, settings_of
 from derive.emit.st.contract import Contract
 from derive.emit.st.expression import literal
-from derive.emit.st.names import capitalized, stored_name
+from derive.emit.st.names import capitalized, stored_name, type_name
 from derive.emit.st.program import Printed
 from derive.ir.constants import (
     SINGULAR,
@@ -18,6 +18,7 @@ from derive.ir.constants import (
 from derive.ir.program import (
     Program,
 )
+from derive.ir.types import type_of
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 
@@ -81,8 +82,8 @@ class Block:
     title: str
     interfaces: tuple[str, ...]
     inputs: tuple[Input, ...]
-    fields: tuple[str, ...]
-    """The instance variables of type LREAL: constants of the programs."""
+    fields: tuple[tuple[str, str], ...]
+    """The instance variables that are constants of the programs, with their types."""
     axes: tuple[Axis, ...]
     axis_fields: tuple[str, ...]
     branches: tuple[BranchByte, ...]
@@ -127,7 +128,7 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         title=mechanism.title or mechanism.block_name,
         interfaces=interfaces,
         inputs=tuple(parameter_input(p) for p in kinematics.parameters),
-        fields=tuple(stored_name(name) for name in constants(kinematics)),
+        fields=_fields(kinematics),
         axes=tuple(_axis(j, f, contract) for j, f in zip(mechanism.joints, axis_fields, strict=False)),
         axis_fields=axis_fields,
         branches=tuple(_branch_byte(i, b.name, b.names) for i, b in enumerate(kinematics.branches)),
@@ -144,6 +145,11 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         computed=_computed(kinematics, interfaces),
         has_settings=SETTINGS in interfaces,
     )
+
+
+def _fields(kinematics: Kinematics) -> tuple[tuple[str, str], ...]:
+    types = {o.name: type_name(type_of(o.value)) for o in kinematics.setup.outputs}
+    return tuple((stored_name(name), types[name]) for name in constants(kinematics))
 
 
 def _computed(kinematics: Kinematics, interfaces: Sequence[str]) -> tuple[tuple[str, str], ...]:
@@ -206,7 +212,7 @@ def _axis(joint: Joint, field: str, contract: Contract) -> Axis:
     unlimited, lower, upper = (stored_name(f"{w}_{joint.key}") for w in ("unlimited", "lower", "upper"))
     kind = contract.spelling["enumerators"][word]
     return Axis(
-        joint.name, field, kind, joint.meaning, f"{unlimited} > 0.5", lower, upper, joint.axis.name, settings_of(joint)
+        joint.name, field, kind, joint.meaning, unlimited, lower, upper, joint.axis.name, settings_of(joint)
     )
 
 

@@ -54,7 +54,7 @@ def branch_call(public: Signature, program: Program, kinematics: Kinematics, blo
     if not any(j.reference.name in read for j in kinematics.mechanism.joints):
         constant = [p for p in constant if p.name != "aRef"]
     inputs = [a for a in _open_inputs(kinematics, block) if a[0] in read]
-    numbers = [Parameter("VAR_INPUT", joined(name), "LREAL") for name, _ in inputs]
+    numbers = [Parameter("VAR_INPUT", joined(name), "INT") for name, _ in inputs]
     arguments = [Argument(p.name, p.name) for p in constant]
     arguments += [Argument(joined(name), value) for name, value in inputs]
     method = "SolveOffsetBranch" if public.name.endswith("_Offset") else "SolveBranch"
@@ -65,9 +65,9 @@ def branch_call(public: Signature, program: Program, kinematics: Kinematics, blo
 
 def _open_inputs(kinematics: Kinematics, block: Block) -> Iterator[tuple[str, str]]:
     for branch in block.branches:
-        yield f"sigma_{branch.name}", f"INT_TO_LREAL(3 - 2*{branch.choice})"
+        yield f"sigma_{branch.name}", f"3 - 2*{branch.choice}"
     for joint, period in zip(kinematics.period_joints, block.periods, strict=True):
-        yield joint.turn.name, f"INT_TO_LREAL(Softkin_PeriodOfByte(cd.abyData[{period.byte}]))"
+        yield joint.turn.name, f"Softkin_PeriodOfByte(cd.abyData[{period.byte}])"
 
 
 def _admitted(block: Block) -> tuple[str, ...]:

@@ -34,14 +34,6 @@ def parameter_input(parameter: Parameter) -> Input:
     return Input(input_name(parameter), kind, default, parameter.meaning, interval, unit)
 
 
-def number_of(parameter: Parameter) -> str:
-    """The input as the real number that programs read."""
-    name = input_name(parameter)
-    if parameter.role is Role.FLAG:
-        return f"SEL({name}, 0.0, 1.0)"
-    return f"INT_TO_LREAL({name})" if parameter.role is Role.SIGN else name
-
-
 def _value(parameter: Parameter) -> tuple[str, str]:
     default = parameter.default or 0.0
     if parameter.role is Role.FLAG:

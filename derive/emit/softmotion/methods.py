@@ -10,9 +10,8 @@ from jinja2 import Environment
 
 from derive.emit.softmotion.block import Block, constants, direct, setup_of
 from derive.emit.softmotion.calls import BranchCall, branch_call
-from derive.emit.softmotion.inputs import number_of
 from derive.emit.st.contract import Contract, Parameter, Signature
-from derive.emit.st.names import joined, stored_name
+from derive.emit.st.names import input_name, joined, stored_name
 from derive.emit.st.program import Printed, printed
 from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal
 from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
@@ -189,7 +188,7 @@ def _method(source: _Source, kinematics: Kinematics, block: Block, contract: Con
 
 def _printed(source: _Source, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> Printed:
     signature = source.signature
-    taken = {i.name for i in block.inputs} | set(block.fields) | {p.name for p in signature.parameters}
+    taken = {i.name for i in block.inputs} | {name for name, _ in block.fields} | {p.name for p in signature.parameters}
     taken |= {"initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes", *contract.signatures}
     taken |= {method_name(inner) for inner in (*kinematics.shared, LIMITS_OF_AXIS)}
     errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
@@ -197,7 +196,7 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
     if REASON in {p.name for p in signature.parameters}:
         refusal = Explained(signature, errors, error, reasons_of(kinematics), texts(kinematics))
     if signature.name == "Initialize":
-        given = {p.name: number_of(p) for p in kinematics.parameters}
+        given = {p.name: input_name(p) for p in kinematics.parameters}
         stored = {let: stored_name(output) for let, output in direct(kinematics, program).items()}
         return printed(program, given, stored, taken, refusal)
     spelled = spelled_inputs(kinematics)

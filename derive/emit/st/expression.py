@@ -78,6 +78,14 @@ class StructuredText(ExpressionPrinter):
             return f"SEL({condition}, {if_false}, {if_true})"
         return f"{_FUNCTIONS[key]}({', '.join(arguments)})"
 
+    def factor(self, expression: sp.Basic) -> str:
+        """A whole number as a real one."""
+        return f"INT_TO_LREAL({self.whole(expression)})"
+
     def logic(self, word: str) -> str:
         """Logical words."""
         return word.upper()
+
+    def comparison(self, operator: str) -> str:
+        """Equality has one sign, the opposite two that point apart."""
+        return {"==": "=", "!=": "<>"}.get(operator, operator)

@@ -65,7 +65,7 @@ def loop_lines(loop: Iterate, step: Sequence[str], printer: StructuredText, refu
 
 def _assigned(names: Sequence[sp.Symbol], values: Sequence[sp.Expr], printer: StructuredText) -> Iterator[str]:
     for name, value in zip(names, values, strict=True):
-        yield from wrapped(f"{printer.name(name)} := {printer.print(value)};")
+        yield from wrapped(f"{printer.name(name)} := {printer.value(name, value)};")
 
 
 def _filled(array: str, entries: Sequence[sp.Expr], width: int, printer: StructuredText) -> Iterator[str]:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from derive.description.mechanism import Parameter, Role
 from derive.emit.st.reserved import reserved
+from derive.ir.types import Type
 
 _LETTERS = {"zc": "ZC"}
 """Words that are letters of axes."""
@@ -37,6 +38,11 @@ def capitalized(name: str) -> str:
 def input_name(parameter: Parameter) -> str:
     """The input of the function block: `dLinkLength1`, `xFlangeDown`, `iDirectionR`."""
     return _PREFIX.get(parameter.role, "d") + capitalized(parameter.name)
+
+
+def type_name(kind: Type) -> str:
+    """The type of a variable."""
+    return {Type.BOOL: "BOOL", Type.INT: "INT"}.get(kind, "LREAL")
 
 
 def stored_name(name: str) -> str:

@@ -11,7 +11,7 @@ import sympy as sp
 from derive.emit.st.expression import StructuredText, is_size_test
 from derive.emit.st.layout import commented, indented, wrapped
 from derive.emit.st.loops import LOCALS, declarations, kept, loop_lines, solve_lines
-from derive.emit.st.names import respelled, spellings
+from derive.emit.st.names import respelled, spellings, type_name
 from derive.emit.st.refusal import Refusal
 from derive.emit.st.shared import OUTCOME, call_lines
 from derive.ir.constants import (
@@ -31,6 +31,7 @@ from derive.ir.program import (
     Statement,
     Status,
 )
+from derive.ir.types import type_of
 
 _SHORT = 72
 """A selection that fits in this many columns stays on one line."""
@@ -40,8 +41,8 @@ _SHORT = 72
 class Printed:
     """A program in Structured Text."""
 
-    variables: tuple[str, ...]
-    """Its temporaries, all LREAL."""
+    variables: tuple[tuple[str, str], ...]
+    """Its temporaries, with their types."""
     declarations: tuple[str, ...]
     """Further variables, with their types."""
     body: str
@@ -58,11 +59,11 @@ def printed(
     temporaries, and have none of the names in `taken`.
     """
     stored = {**stored, **kept(program.body)}
-    names = (name.name for name in program.bound() if name.name not in stored)
-    temporaries = spellings(names, (*taken, *LOCALS, OUTCOME))
+    own = {name.name: name for name in program.bound() if name.name not in stored}
+    temporaries = spellings(own, (*taken, *LOCALS, OUTCOME))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
     return Printed(
-        variables=tuple(temporaries.values()),
+        variables=tuple((temporaries[name], type_name(type_of(symbol))) for name, symbol in own.items()),
         declarations=(*declarations(program.body), *_outcome(program, refusal)),
         body="\n".join(_body(program.body, printer, refusal)),
         outputs={o.name: printer.print(o.value) for o in program.outputs},
@@ -145,4 +146,4 @@ def _choice(condition: str, lets: Sequence[Let], printer: StructuredText) -> lis
 
 
 def _assignment(let: Let, value: sp.Expr, printer: StructuredText) -> str:
-    return f"{printer.name(let.name)} := {printer.print(value)};"
+    return f"{printer.name(let.name)} := {printer.value(let.name, value)};"

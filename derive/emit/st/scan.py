@@ -16,7 +16,10 @@ from derive.emit.st.shared import method_name
 from derive.ir import roots
 from derive.ir.constants import FINISHED, TRIALS
 from derive.ir.program import FindRoot, Program
-from derive.ir.symbols import PLACE
+from derive.ir.symbols import (
+    PLACE,
+    is_count,
+)
 
 TRY_AT = "TryAt"
 _STACKED, _PLACES = 60, 48
@@ -49,7 +52,9 @@ class SearchText:
     """What the two methods are made of."""
 
     given: tuple[str, ...]
-    """What a trial is given, as the search names it."""
+    """What a trial is given, as the search names it: its numbers."""
+    chosen: tuple[str, ...]
+    """The same: its signs."""
     columns: int
     """How many numbers a trial says."""
     directions: int
@@ -67,37 +72,42 @@ def search_in(program: Program) -> FindRoot | None:
 
 def try_at_signature(search: FindRoot) -> Signature:
     """The method that tries a place of a cell."""
-    inputs = {"dBase": "LREAL", "dScale": "LREAL", "xCurved": "BOOL", "dS": "LREAL", "dFreed": "LREAL", "dAngle": "LREAL"}
-    arrays = {"aGiven": len(_given(search)), "aSaid": len(search.trial.outputs)}
+    inputs = {"dBase": "LREAL", "dScale": "LREAL", "xCurved": "BOOL", "dS": "LREAL", "iFreed": "INT", "dAngle": "LREAL"}
+    numbers, signs = _given(search)
+    arrays = {"aGiven": (numbers, "LREAL"), "aSigns": (signs, "INT"), "aSaid": (search.trial.outputs, "LREAL")}
     parameters = [Parameter("VAR_INPUT", name, kind) for name, kind in inputs.items()]
-    parameters += [Parameter("VAR_IN_OUT", name, f"ARRAY[1..{size}] OF LREAL") for name, size in arrays.items()]
+    sized = {name: f"ARRAY[1..{len(own)}] OF {kind}" for name, (own, kind) in arrays.items() if own}
+    parameters += [Parameter("VAR_IN_OUT", name, kind) for name, kind in sized.items()]
     return Signature(TRY_AT, "", tuple(parameters), "PRIVATE")
 
 
 def search_text(search: FindRoot) -> SearchText:
     """The parts of both methods."""
-    given = _given(search)
+    given, chosen = _given(search)
     numbers = {name: f"aGiven[{k}]" for k, name in enumerate(given, 1)}
-    cell = {"tried": "place", "side": "SEL(xCurved AND (dS < 0.0), 1.0, -1.0)", "freed": "dFreed", "freed_angle": "dAngle"}
-    root = {"tried": "places[nearest, 1]", "side": "places[nearest, 2]", "freed": "places[nearest, 3]"}
-    root |= {"freed_angle": "places[nearest, 4]"}
+    numbers |= {name: f"aSigns[{k}]" for k, name in enumerate(chosen, 1)}
+    cell = {"tried": "place", "side": "SEL(xCurved AND (dS < 0.0), 1, -1)", "freed": "iFreed", "freed_angle": "dAngle"}
+    root = {"tried": "joints[nearest]", "side": "sides[nearest]", "freed": "freedAt[nearest]", "freed_angle": "angles[nearest]"}
     outputs = [joined(o.name) for o in search.trial.outputs]
     found = [joined(o.name) for o in search.finish.outputs]
     targets = [joined(n.name) for n in search.names]
     return SearchText(
         given=tuple(given),
+        chosen=tuple(chosen),
         columns=len(outputs),
         directions=(len(outputs) - 4) // 2,
         tried_outputs=tuple(outputs),
         try_call=_call(search.trial, _arguments(search, search.trial, cell | numbers), outputs),
         finish_call=_call(search.finish, _arguments(search, search.finish, root), found),
-        success=f"{targets[0]} := 1.0;",
-        nothing="\n".join(f"{t} := 0.0;" for t in targets),
+        success=f"{targets[0]} := TRUE;",
+        nothing="\n".join([f"{targets[0]} := FALSE;", *(f"{t} := 0.0;" for t in targets[1:])]),
     )
 
 
-def _given(search: FindRoot) -> list[str]:
-    return [joined(s.name) for s in search.given(search.trial) if s not in PLACE]
+def _given(search: FindRoot) -> tuple[list[str], list[str]]:
+    """The numbers and the signs that a trial is given."""
+    given = [s for s in search.given(search.trial) if s not in PLACE]
+    return [joined(s.name) for s in given if not is_count(s)], [joined(s.name) for s in given if is_count(s)]
 
 
 def _arguments(search: FindRoot, program: Program, places: Mapping[str, str]) -> list[str]:

@@ -13,9 +13,10 @@ import sympy as sp
 from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import indented, packed
-from derive.emit.st.names import capitalized, joined
+from derive.emit.st.names import capitalized, joined, type_name
 from derive.emit.st.refusal import Refusal
 from derive.ir.program import Call, Program, Status
+from derive.ir.types import type_of
 
 OUTCOME = "outcome"
 """The variable that holds what a call answered."""
@@ -33,8 +34,8 @@ def signature_of(program: Program, spelled: Mapping[str, str], contract: Contrac
     axes = contract.signatures["Jacobian"].parameters[1]
     if not whole <= {axes.name}:
         raise TypeError(f"{program.name}: a shared program reads axis values and its own arguments, not {sorted(whole)}")
-    arguments = [Parameter("VAR_INPUT", joined(s.name), "LREAL") for s in program.inputs if s.name not in spelled]
-    results = [Parameter("VAR_OUTPUT", joined(o.name), "LREAL") for o in program.outputs]
+    arguments = [Parameter("VAR_INPUT", joined(s.name), type_name(type_of(s))) for s in program.inputs if s.name not in spelled]
+    results = [Parameter("VAR_OUTPUT", joined(o.name), type_name(type_of(o.value))) for o in program.outputs]
     given = (axes, *arguments) if whole else tuple(arguments)
     return Signature(method_name(program), contract.spelling["types"]["error"], (*given, *results), "PRIVATE")
 
@@ -56,7 +57,7 @@ def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterato
 
 
 def _argument(name: sp.Symbol, value: sp.Expr, printer: StructuredText) -> str:
-    text = printer.print(value)
+    text = printer.value(name, value)
     if value == name and "." in text:
         whole = text.split(".")[0]
         return f"{whole} := {whole}"

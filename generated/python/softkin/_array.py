@@ -14,8 +14,8 @@ from softkin._scalar import DEGREE
 from softkin._types import Status
 
 __all__ = [
-    "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Vector",
-    "StartedPrograms", "Truth", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "passed",
+    "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Signs", "Turns", "Vector",
+    "StartedPrograms", "Truth", "Whole", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "opposite", "passed",
     "refused", "require", "root", "select", "settled", "sin", "solve", "sqrt",
 ]  # fmt: skip
 
@@ -23,6 +23,9 @@ Array: TypeAlias = NDArray[np.float64]
 Real: TypeAlias = Array | float
 """A value for every row, or one for all."""
 Reals: TypeAlias = tuple[Real, ...]
+Whole: TypeAlias = NDArray[np.int64] | int
+Signs: TypeAlias = tuple[Whole, ...]
+Turns: TypeAlias = tuple[Whole, ...]
 Vector: TypeAlias = tuple[Real, Real, Real]
 Rotation: TypeAlias = tuple[Vector, Vector, Vector]
 Truth: TypeAlias = NDArray[np.bool_] | bool
@@ -42,12 +45,12 @@ class Programs(ABC):
 
     @abstractmethod
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals]
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses. signs: of the branches, slot by slot."""
         return tuple([self.branch(position, rotation, slot, turns, reference) for slot in signs])
@@ -92,6 +95,11 @@ def everywhere(condition: Truth) -> bool:
     return bool(condition.all()) if isinstance(condition, np.ndarray) else bool(condition)
 
 
+def opposite(condition: Truth) -> Truth:
+    """The rows in which a condition does not hold."""
+    return ~condition if isinstance(condition, np.ndarray) else not condition
+
+
 def elsewhere(condition: Truth, values: Reals, other: Callable[..., Reals], given: Reals) -> Reals:
     """The values where a condition holds; in the other rows, what `other` makes of what is given there."""
     if everywhere(condition):
@@ -110,9 +118,9 @@ def _replaced(value: Real, rows: NDArray[np.intp], new: Real, shape: tuple[int, 
     return whole
 
 
-def refused(status: Codes, refusal: Real) -> Codes:
+def refused(status: Codes, refusal: Whole) -> Codes:
     """The statuses of a slot: those of all slots, else its own, which come as numbers."""
-    if not isinstance(refusal, np.ndarray) and refusal == 0.0:
+    if not isinstance(refusal, np.ndarray) and refusal == 0:
         return status
     codes = np.asarray(refusal).astype(np.uint8)
     return np.where(status == Status.OK, codes, status) if status.any() else np.broadcast_to(codes, status.shape)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softkin._array import Codes, Programs, Real, Reals, Rotation, Vector
+from softkin._array import Codes, Programs, Real, Reals, Rotation, Signs, Turns, Vector
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class CoupledPrograms(Programs):
         return pose, _both(status, outcome)
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The orientation first where the flange keeps its own, else the position."""
         first = signs[: self.branches], turns[: self.periods], reference[: self.count]

@@ -105,7 +105,7 @@ def inverse_all(
 ) -> tuple[Array, Codes]:
     """Every slot of every row."""
     table = Table(robot, positions, rotations, references)
-    every, turns = slots((AUTOMATIC,) * robot.BRANCHES), (0.0,) * len(robot.PERIOD_AXES)
+    every, turns = slots((AUTOMATIC,) * robot.BRANCHES), (0,) * len(robot.PERIOD_AXES)
     width, signs = len(robot.AXES), [s for _, s in every]
     axes, statuses = np.empty((table.count, len(every), width)), np.empty((table.count, len(every)), np.uint8)
     # Columns whose distance is no power of two: such columns displace each other from the cache when they become rows.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from softkin._array import Array, Codes, Real, Reals, Rotation, Vector
+from softkin._array import Array, Codes, Reals, Rotation, Signs, Turns, Vector, Whole
 from softkin._array_rotation import made_rotations
 from softkin._configuration import AUTOMATIC, COINCIDE, FIRST, SECOND
 from softkin._table import numbers
@@ -79,12 +79,12 @@ class Configurations:
     """Configurations; where one row stands for all, a column has one entry."""
 
     branches: tuple[Bytes, ...]
-    turns: Reals
+    turns: Turns
     are_bytes: Mask
     """Which rows are a configuration at all."""
 
     @property
-    def signs(self) -> Reals:
+    def signs(self) -> Signs:
         """The signs of the branches that are named."""
         return tuple(_number(3 - 2 * branch) for branch in self.branches)  # FIRST is 1, SECOND is -1
 
@@ -130,12 +130,12 @@ def columns(values: Array) -> tuple[Array, ...]:
     return tuple(np.ascontiguousarray(values.T))
 
 
-def _number(column: Bytes) -> Real:
-    """A column as real numbers, or as one."""
-    return float(column[0]) if (column == column[0]).all() else column.astype(np.float64)
+def _number(column: Bytes) -> Whole:
+    """A column as whole numbers that can be calculated with, or as one."""
+    return int(column[0]) if (column == column[0]).all() else column.astype(np.int64)
 
 
-def _at(value: Real, rows: Rows) -> Real:
+def _at(value: Whole, rows: Rows) -> Whole:
     return value[rows] if isinstance(value, np.ndarray) else value
 
 

@@ -9,7 +9,7 @@ from math import floor
 from typing import NamedTuple, TypeAlias
 
 from softkin._scalar import nearest_period
-from softkin._types import Configuration, KinematicsError, Reals, Status
+from softkin._types import Configuration, KinematicsError, Reals, Signs, Status
 
 AUTOMATIC, FIRST, SECOND, COINCIDE = 0, 1, 2, 3
 """The values of a branch byte. `COINCIDE` is written where the branches meet, and read as automatic."""
@@ -33,7 +33,7 @@ class Criterion(NamedTuple):
     """Squared distances closer than this are equal: then the lower slot is taken."""
 
 
-Slot: TypeAlias = tuple[Configuration, Reals]
+Slot: TypeAlias = tuple[Configuration, Signs]
 """The branch bytes of a slot, and the signs that they stand for."""
 
 
@@ -45,7 +45,7 @@ def slots(branch_bytes: Configuration) -> tuple[Slot, ...]:
             raise KinematicsError(Status.BAD_INPUT, f"a branch byte must be 0, 1, 2 or 3, not {byte}")
     choices = [(byte,) if byte in (FIRST, SECOND) else (FIRST, SECOND) for byte in reversed(branch_bytes)]
     found = [tuple(reversed(slot)) for slot in product(*choices)]
-    return tuple((slot, tuple(1.0 if byte == FIRST else -1.0 for byte in slot)) for slot in found)
+    return tuple((slot, tuple(1 if byte == FIRST else -1 for byte in slot)) for slot in found)
 
 
 def branch_byte(measure: float) -> int:

@@ -39,9 +39,11 @@ from softkin._types import (
     PlainFrame,
     Reals,
     Rotation,
+    Signs,
     Singularity,
     Solution,
     Status,
+    Turns,
     Vector,
 )
 
@@ -62,14 +64,14 @@ _STATUSES = tuple(Status)
 
 Pose: TypeAlias = tuple[Vector, Rotation, Reals]
 Image: TypeAlias = tuple[Rotation, Vector, Vector]
-_OneBranch: TypeAlias = Callable[[Reals], Reals | Diagnosis]
+_OneBranch: TypeAlias = Callable[[Signs], Reals | Diagnosis]
 """The axes by the signs of the branches."""
 
 
 class EveryBranch(Protocol):
     """Every slot: its axes, or the number of its status."""
 
-    def __call__(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]: ...
+    def __call__(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]: ...
 
 
 class Branches(Protocol):
@@ -81,7 +83,7 @@ class Branches(Protocol):
 class Branch(Protocol):
     """`Mechanism.branch` of one machine."""
 
-    def __call__(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None: ...
+    def __call__(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None: ...
 
 
 class Unrolled(NamedTuple):
@@ -126,10 +128,10 @@ class Mechanism(ABC):
     """The axes that decide an automatic choice, by index."""
 
     parameters: Mapping[str, float]
-    """The parameters as given, flags as 0 or 1."""
+    """The parameters as given: flags are bool, directions int."""
 
     def _accept(self, *values: float) -> list[float]:
-        """The parameters in the order of `PARAMETERS`, as floats."""
+        """The parameters in the order of `PARAMETERS`, each in its type."""
         found = [parameter_value(self.NAME, p, v) for p, v in zip(self.PARAMETERS, values, strict=True)]
         self.parameters = MappingProxyType({p.name: v for p, v in zip(self.PARAMETERS, found, strict=True)})
         self.checks_limits = bool(self.parameters["check_limits"])
@@ -149,7 +151,7 @@ class Mechanism(ABC):
     def __repr__(self) -> str:
         """The call that makes this mechanism."""
         given = [(p, self.parameters[p.name]) for p in self.PARAMETERS if self.parameters[p.name] != p.default]
-        values = (f"{p.name}={bool(v) if p.kind == 'flag' else v!r}" for p, v in given)
+        values = (f"{p.name}={v!r}" for p, v in given)
         return f"{type(self).__name__}({', '.join(values)})"
 
     def __reduce__(self) -> tuple[Callable[..., Mechanism], tuple[type[Mechanism], dict[str, float]]]:
@@ -211,7 +213,7 @@ class Mechanism(ABC):
         near, rotation = self._near(reference), self._made(rows)
         every = slots((AUTOMATIC,) * self.BRANCHES)
         if isinstance(rotation, Diagnosis):
-            return Solutions((float(rotation.status),) * len(every), every, self._solution)
+            return Solutions((int(rotation.status),) * len(every), every, self._solution)
         return Solutions(self._every_branch(position, rotation, near), every, self._solution)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -222,13 +224,13 @@ class Mechanism(ABC):
         """
         return tuple([self.branch(frame, signs, reference) for _, signs in slots((AUTOMATIC,) * self.BRANCHES)])
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops, with input and axes as `branches` has them.
 
-        signs: 1.0 for byte 1 of a branch, -1.0 for byte 2.
+        signs: 1 for byte 1 of a branch, -1 for byte 2.
         """
         near = (0.0,) * len(self.AXES) if reference is None else reference
-        axes = self._branch(*frame, signs, (0.0,) * len(self.PERIOD_AXES), near)
+        axes = self._branch(*frame, signs, (0,) * len(self.PERIOD_AXES), near)
         return None if isinstance(axes, Diagnosis) else axes
 
     def diagnose(
@@ -317,28 +319,28 @@ class Mechanism(ABC):
 
         return _batch.inverse_all(self, self._array_programs(), positions, rotations, references)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
-        open_turns = (0.0,) * len(self.PERIOD_AXES)
-        found: list[Reals | float] = []
+        open_turns = (0,) * len(self.PERIOD_AXES)
+        found: list[Reals | int] = []
         for _, signs in slots((AUTOMATIC,) * self.BRANCHES):
             axes = self._branch(position, rotation, signs, open_turns, reference)
             found.append(self._inside(axes))
         return tuple(found)
 
-    def _inside(self, axes: Reals | Diagnosis) -> Reals | float:
+    def _inside(self, axes: Reals | Diagnosis) -> Reals | int:
         """Axes inside their limits, or the number of the status."""
         if isinstance(axes, Diagnosis):
-            return float(axes.status)
+            return int(axes.status)
         refused = self._beyond_limits(axes)
-        return axes if refused is None else float(refused.status)
+        return axes if refused is None else int(refused.status)
 
-    def _solution(self, slot: Slot, found: Reals | float) -> Solution:
+    def _solution(self, slot: Slot, found: Reals | int) -> Solution:
         """A slot with its configuration."""
         branches, _ = slot
         if isinstance(found, tuple):
             return Solution(self._joined(branches, self._periods(found)), found, Status.OK)
-        return Solution(self._joined(branches, (0,) * len(self.PERIOD_AXES)), None, _STATUSES[int(found)])
+        return Solution(self._joined(branches, (0,) * len(self.PERIOD_AXES)), None, _STATUSES[found])
 
     def _pose(self, frame: FrameLike) -> tuple[Vector, Rotation]:
         """Position and rotation as given; a rotation that nobody reads is not looked at."""
@@ -367,7 +369,7 @@ class Mechanism(ABC):
         count = len(self.AXES)
         return (0.0,) * count if reference is None else reals(reference, count, "reference")
 
-    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Reals]:
+    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
         """Branch bytes, and the turns as the programs read them."""
         if configuration is None:
             configuration = self.DEFAULT_CONFIGURATION
@@ -455,7 +457,7 @@ class Mechanism(ABC):
 
     @abstractmethod
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis: ...
 
     @abstractmethod

@@ -22,7 +22,9 @@ from softkin._types import (
     Matrix,
     Reals,
     Rotation,
+    Signs,
     Status,
+    Turns,
     Vector,
 )
 from softkin._vectors import moved, plus, product, seen_from, turned
@@ -30,7 +32,7 @@ from softkin._vectors import moved, plus, product, seen_from, turned
 if TYPE_CHECKING:
     from softkin._array import Programs
 
-_Choice: TypeAlias = tuple[Reals, Reals, Reals]
+_Choice: TypeAlias = tuple[Signs, Turns, Reals]
 """Signs of the branches, turns and reference of one part."""
 _Named = TypeVar("_Named", Axis, ConfigurationByte)
 _ORIGIN: Vector = (0.0, 0.0, 0.0)
@@ -108,7 +110,7 @@ class Coupled(Mechanism):
     def _period_bytes(self) -> list[int]:
         return [i for i, byte in enumerate(self.CONFIGURATION) if byte.kind == "period"]
 
-    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Reals]:
+    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
         """Branch bytes of both parts, and the turns of both."""
         given = self.DEFAULT_CONFIGURATION if configuration is None else configuration
         found = bytes_of(given, len(self.CONFIGURATION))
@@ -142,14 +144,14 @@ class Coupled(Mechanism):
         return own if isinstance(own, Status) else product(flange, own)
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of both: those that carry to a point, and those that turn as the flange sees it; reasons name the part."""
         solve = self._position_first if self._flange is None else self._orientation_first
         axes = solve(position, rotation, *self._split(signs, turns, reference))
         return Diagnosis(axes, f"{self.orientation_part.NAME}: its end point", 0.0) if isinstance(axes, Status) else axes
 
-    def _split(self, signs: Reals, turns: Reals, reference: Reals) -> tuple[_Choice, _Choice]:
+    def _split(self, signs: Signs, turns: Turns, reference: Reals) -> tuple[_Choice, _Choice]:
         """What each part is given."""
         first, cut = self.position_part, len(self.position_part.PERIOD_AXES)
         carrier = signs[: first.BRANCHES], turns[:cut], reference[: self._count]

@@ -88,15 +88,22 @@ def bytes_of(configuration: Iterable[int], count: int) -> tuple[int, ...]:
 
 
 def parameter_value(mechanism: str, parameter: Parameter, value: float) -> float:
-    """The value of a parameter as a float, if it is a number; a choice must be one. Ranges are tested by the setup."""
+    """The value of a parameter in its type, if it is a number; a choice must be one. Ranges are tested by the setup."""
     try:
         (number,) = array("d", (value,))
     except (TypeError, OverflowError):
         number = nan
     if number in (0.0, 1.0) or (parameter.kind != "flag" and not isnan(number)):
-        return number
+        return _typed(parameter, number)
     message = f"{mechanism}: {parameter.name} = {value!r} is not allowed: it must be {parameter.range}"
     raise KinematicsError(Status.NOT_INITIALIZED, message)
+
+
+def _typed(parameter: Parameter, number: float) -> float:
+    """A flag as bool, a direction as int; a direction that is no whole number is refused by the setup as it is."""
+    if parameter.kind == "flag":
+        return bool(number)
+    return int(number) if parameter.kind == "sign" and number.is_integer() else number
 
 
 def unusable(inputs: dict[str, object]) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from softkin._core import Mechanism
 from softkin._input import reals
-from softkin._types import Configuration, Diagnosis, Numbers, Reals, Status, Vector
+from softkin._types import Configuration, Diagnosis, Numbers, Reals, Signs, Status, Turns, Vector
 
 
 class OffsetKinematics(Mechanism):
@@ -49,7 +49,7 @@ class OffsetKinematics(Mechanism):
 
     @abstractmethod
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis: ...
 
     @abstractmethod

@@ -35,7 +35,7 @@ _THIRD = 2.0 * pi / 3.0
 Values = tuple[Any, ...]
 Scan = Callable[[Values, Any], Values]
 """The trial on arrays."""
-Place = tuple[float, float, float, float]
+Place = tuple[float, int, int, float]
 """The joint, the side, the direction that is free or -1, its angle."""
 Said = tuple[float, ...]
 """Value, slope, guard, slope of the guard, then cosine and sine of every direction."""
@@ -46,14 +46,15 @@ def nearest_root(
     trial: Callable[[Values], Any], finish: Callable[[Values], Any], start: float, wanted: bool,
     trial_given: Values, finish_given: Values, count: int, scan: Scan,
 ) -> Values:
-    """1 and what `finish` says at the root that fits and is nearest to the start; zeros where there is none, or none is wanted.
+    """True and what `finish` says at the root that fits and is nearest to the start; False and zeros where there is none, or
+    none is wanted.
 
     What is given are values; the parts of a place stand there by their names.
     """
     if wanted:
         for values in _finished(trial, finish, start, trial_given, finish_given, scan, _FINISHED):
-            return (1.0, *values[1:])
-    return count * (0.0,)
+            return values
+    return (False, *(count - 1) * (0.0,))
 
 
 def every_root(
@@ -74,7 +75,7 @@ def _finished(
     at = _of(finish, finish_given)
     for place in places[:most]:
         values = at(place)
-        if values[0] > 0.5:
+        if values[0]:
             yield values
 
 
@@ -83,7 +84,7 @@ def _scanned(scan: Scan, start: float, given: Values) -> list[Said]:
     import numpy as np
 
     joint = start + 2.0 * pi / CELLS * (np.arange(CELLS) + 0.5)
-    place = {"tried": joint, "side": 1.0, "freed": -1.0, "freed_angle": 0.0}
+    place = {"tried": joint, "side": 1, "freed": -1, "freed_angle": 0.0}
     with np.errstate(all="ignore"):
         said = scan(tuple(place[v] if isinstance(v, str) else v for v in given), np.zeros(CELLS, np.uint8))
     columns: list[Said] = np.stack([np.broadcast_to(v, joint.shape) for v in said], axis=1).tolist()
@@ -135,8 +136,8 @@ class _Search:
     def place(base: float, scale: float, curved: bool, s: float) -> Place:
         """Where a trial is made."""
         if curved:
-            return (base + scale * s * s, -1.0 if s < 0.0 else 1.0, -1.0, 0.0)
-        return (base + scale * s, 1.0, -1.0, 0.0)
+            return (base + scale * s * s, -1 if s < 0.0 else 1, -1, 0.0)
+        return (base + scale * s, 1, -1, 0.0)
 
     def cut(self, cell: Cell) -> list[Cell]:
         """The parts of a cell that has to be cut; none where its root is found, or there is none."""
@@ -255,7 +256,7 @@ class _Search:
         if len(first) == 4:
             return
         joint, side = self.place(base, scale, curved, 0.5 * (low + high))[:2]
-        freed = float(min(range((len(first) - 4) // 2), key=lambda k: _turn(first, last, k)))
+        freed = min(range((len(first) - 4) // 2), key=lambda k: _turn(first, last, k))
         self.trials += 3
         a, b, c = (self.trial((joint, side, freed, k * _THIRD))[0] for k in (0, 1, 2))
         level = (a + b + c) / 3.0

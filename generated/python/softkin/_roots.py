@@ -60,13 +60,15 @@ class At(NamedTuple):
 
     rows: Rows
     joint: Reals
-    side: Reals
+    side: Rows
     freed: Rows
     """The number of the direction that is given by `angle` instead, or -1."""
     angle: Reals
 
 
 Trial = Callable[[At], Reals]
+Finish = Callable[[At], tuple[Flags, Reals]]
+"""Whether a root fits, and what is said of it."""
 """The columns value, slope, guard, slope of the guard, then cosine and sine of every direction."""
 VALUE, SLOPE, GUARD, GUARD_SLOPE, DIRECTIONS = range(5)
 
@@ -97,9 +99,9 @@ class Cells:
         """The joint at s."""
         return np.asarray(self.base + self.scale * np.where(self.curved, s * s, s))
 
-    def side(self, s: Reals) -> Reals:
+    def side(self, s: Reals) -> Rows:
         """The side at s."""
-        return np.where(self.curved & (s < 0.0), -1.0, 1.0)
+        return np.where(self.curved & (s < 0.0), -1, 1)
 
     def at(self, trial: Trial, s: Reals) -> Reals:
         """What the trial says at s."""
@@ -127,7 +129,8 @@ def joined(*parts: Cells) -> Cells:
 def find_roots(trial: Trial, start: Reals) -> At:
     """Every root of every row, and more that only a look at the whole closure tells from roots; in no order."""
     if not len(start):
-        return At(np.zeros(0, dtype=int), start, start, np.zeros(0, dtype=int), start)
+        none = np.zeros(0, dtype=int)
+        return At(none, start, none, none, start)
     cells = _around(trial, start)
     found = [_start(trial, start)]
     ends, holding = [cells.take(np.zeros(0, dtype=int))], [cells.take(np.zeros(0, dtype=int))]
@@ -148,17 +151,17 @@ def find_roots(trial: Trial, start: Reals) -> At:
     return _all([*found, *_closed_in(trial, joined(*holding))])
 
 
-def nearest(trial: Trial, finish: Trial, start: Reals) -> tuple[Flags, Reals]:
-    """Whether a row has a root that fits, and what `finish` says at the nearest of them, without its first column."""
+def nearest(trial: Trial, finish: Finish, start: Reals) -> tuple[Flags, Reals]:
+    """Whether a row has a root that fits, and what `finish` says at the nearest of them."""
     place = find_roots(trial, start)
-    values = finish(place)
+    is_wanted, values = finish(place)
     away = place.joint - start[place.rows]
     away = np.abs(away - 2.0 * np.pi * np.round(away / (2.0 * np.pi)))
-    fits = np.flatnonzero(values[:, 0] > 0.5)
+    fits = np.flatnonzero(is_wanted)
     order = fits[np.lexsort((away[fits], place.rows[fits]))]
     rows, first = np.unique(place.rows[order], return_index=True)
-    found, answer = np.zeros(len(start), dtype=bool), np.zeros((len(start), values.shape[1] - 1))
-    found[rows], answer[rows] = True, values[order[first], 1:]
+    found, answer = np.zeros(len(start), dtype=bool), np.zeros((len(start), values.shape[1]))
+    found[rows], answer[rows] = True, values[order[first]]
     return found, answer
 
 
@@ -177,7 +180,7 @@ def _vanishes(said: Reals) -> Flags:
 def _start(trial: Trial, start: Reals) -> At:
     """The starts that are roots themselves: a path stands there."""
     rows = np.arange(len(start))
-    place = At(rows, start, np.ones(len(rows)), np.full(len(rows), -1), np.zeros(len(rows)))
+    place = At(rows, start, np.ones(len(rows), dtype=int), np.full(len(rows), -1), np.zeros(len(rows)))
     said = trial(place)
     is_root = _vanishes(said)
     return At(rows[is_root], start[is_root], place.side[is_root], place.freed[is_root], place.angle[is_root])
@@ -411,33 +414,52 @@ def nearest_root(
     trial: Callable[[Values, Any], Values], finish: Callable[[Values, Any], Values], start: Any, wanted: Any, status: Any,
     trial_given: Values, finish_given: Values, count: int,
 ) -> Values:
-    """1 and what `finish` says at the root that fits and is nearest to the start; zeros where there is none, or none is wanted.
+    """True and what `finish` says at the root that fits and is nearest to the start; False and zeros where there is none, or
+    none is wanted.
 
     What is given are values for every row, or one for all; the parts of a place stand there by their names.
     """
     shape = np.shape(status)
-    answer = np.zeros((count, *shape))
+    there, answer = np.zeros(shape, np.bool_), np.zeros((count - 1, *shape))
     looked = np.flatnonzero(np.broadcast_to(wanted, shape) & (status == 0))
     for k in range(0, len(looked), _ROWS):
         rows = looked[k : k + _ROWS]
         begin = np.broadcast_to(start, shape).ravel()[rows]
-        tries, finishes = _of(trial, trial_given, shape, rows, 0), _of(finish, finish_given, shape, rows, count)
-        found, values = nearest(tries, finishes, begin)
-        answer.reshape(count, -1)[:, rows] = np.concatenate([found[:, None], values], axis=1).T
-    return tuple(answer)
+        tries, finishes = _of(trial, trial_given, shape, rows), _of(finish, finish_given, shape, rows)
+        found, values = nearest(_tried(tries), _finished(finishes, count - 1), begin)
+        there.reshape(-1)[rows] = found
+        answer.reshape(count - 1, -1)[:, rows] = values.T
+    return (there, *answer)
 
 
-def _of(program: Callable[[Values, Any], Values], given: Values, shape: tuple[int, ...], rows: Rows, count: int) -> Trial:
-    """A program as a function of the place, for these rows."""
-    fixed = [v if isinstance(v, str | float) else np.broadcast_to(v, shape).ravel()[rows] for v in given]
+def _tried(says: Callable[[At], list[Any]]) -> Trial:
+    """A trial as a table."""
+    return lambda place: np.stack(says(place), axis=1) if len(place.rows) else np.zeros((0, 0))
 
-    def at(place: At) -> Reals:
-        there = dict(zip(("tried", "side", "freed", "freed_angle"), place[1:], strict=True))
-        values = tuple(there[v] if isinstance(v, str) else v if isinstance(v, float) else v[place.rows] for v in fixed)
+
+def _finished(says: Callable[[At], list[Any]], count: int) -> Finish:
+    """Whether a root fits, and a table of what is said of it."""
+
+    def finish(place: At) -> tuple[Flags, Reals]:
         if not len(place.rows):
-            return np.zeros((0, count))
+            return np.zeros(0, np.bool_), np.zeros((0, count))
+        fits, *values = says(place)
+        return fits, np.stack(values, axis=1)
+
+    return finish
+
+
+def _of(
+    program: Callable[[Values, Any], Values], given: Values, shape: tuple[int, ...], rows: Rows
+) -> Callable[[At], list[Any]]:
+    """What a program says at places, for these rows."""
+    fixed = [v if isinstance(v, str | float | int) else np.broadcast_to(v, shape).ravel()[rows] for v in given]
+
+    def at(place: At) -> list[Any]:
+        there = dict(zip(("tried", "side", "freed", "freed_angle"), place[1:], strict=True))
+        values = tuple(there[v] if isinstance(v, str) else v if isinstance(v, float | int) else v[place.rows] for v in fixed)
         with np.errstate(all="ignore"):
             said = program(values, np.zeros(len(place.rows), np.uint8))
-        return np.stack([np.broadcast_to(v, place.joint.shape) for v in said], axis=1)
+        return [np.broadcast_to(v, place.joint.shape) for v in said]
 
     return at

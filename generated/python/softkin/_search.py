@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from softkin._configuration import AUTOMATIC, Slot, slots
 from softkin._core import Mechanism
-from softkin._types import Diagnosis, FrameLike, Numbers, Reals, Rotation, Solution, Status, Vector
+from softkin._types import Diagnosis, FrameLike, Numbers, Reals, Rotation, Signs, Solution, Status, Turns, Vector
 
 _SAME = 2e-3
 """Axes nearer than this (degrees, lengths) are one solution of a branch: where the search only touches zero, it is met again
@@ -35,29 +35,29 @@ class SearchedInverse(Mechanism):
         position, rows = self._pose(frame)
         near, rotation, every = self._near(reference), self._made(rows), slots((AUTOMATIC,) * self.BRANCHES)
         if isinstance(rotation, Diagnosis):
-            return tuple(self._solution(slot, float(rotation.status)) for slot in every)
-        turns = (0.0,) * len(self.PERIOD_AXES)
+            return tuple(self._solution(slot, int(rotation.status)) for slot in every)
+        turns = (0,) * len(self.PERIOD_AXES)
         given = self._search_given(position, rotation, every[0][1], turns, near)
         if isinstance(given, Status):
-            return tuple(self._solution(slot, float(given)) for slot in every)
+            return tuple(self._solution(slot, int(given)) for slot in every)
         if not self._is_searched():
             answers = (self._branch(position, rotation, slot[1], turns, near) for slot in every)
             return tuple(map(self._solution, every, map(self._inside, answers)))
-        found: dict[Reals, list[Reals]] = {}
+        found: dict[Signs, list[Reals]] = {}
         for signs in dict.fromkeys(slot[1][: self.SIDES] for slot in every):
-            given = self._search_given(position, rotation, (*signs, *(0.0,) * (self.BRANCHES - self.SIDES)), turns, near)
+            given = self._search_given(position, rotation, (*signs, *(0,) * (self.BRANCHES - self.SIDES)), turns, near)
             for joints in self._all_joints(given) if not isinstance(given, Status) else ():
                 self._sort_in(found, self._from_joints(joints, turns, near))
         return tuple(self._solutions(slot, found.get(slot[1], [])) for slot in every)
 
-    def _sort_in(self, found: dict[Reals, list[Reals]], axes: Reals | Status) -> None:
+    def _sort_in(self, found: dict[Signs, list[Reals]], axes: Reals | Status) -> None:
         """A solution under the signs of its branch; where branches coincide, under those of both."""
         pose = self._forward(axes) if not isinstance(axes, Status) else axes
         if isinstance(pose, Status) or isinstance(axes, Status):
             return
-        signs: list[tuple[float, ...]] = [()]
+        signs: list[Signs] = [()]
         for margin in pose[2]:
-            sides = (1.0, -1.0) if abs(margin) < _COINCIDE else (1.0 if margin > 0.0 else -1.0,)
+            sides = (1, -1) if abs(margin) < _COINCIDE else (1 if margin > 0.0 else -1,)
             signs = [(*s, side) for s in signs for side in sides]
         for key in signs:
             others = found.setdefault(key, [])
@@ -67,7 +67,7 @@ class SearchedInverse(Mechanism):
     def _solutions(self, slot: Slot, found: Sequence[Reals]) -> Solution:
         """A slot with its solutions, nearest first."""
         allowed = [axes for axes in found if self._beyond_limits(axes) is None]
-        first = self._solution(slot, allowed[0] if allowed else float(Status.UNREACHABLE))
+        first = self._solution(slot, allowed[0] if allowed else int(Status.UNREACHABLE))
         return first._replace(others=tuple(allowed[1:]))
 
     def _are_same(self, axes: Reals, other: Reals) -> bool:
@@ -83,7 +83,7 @@ class SearchedInverse(Mechanism):
 
     @abstractmethod
     def _search_given(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Status:
         """What the search is given."""
 
@@ -92,5 +92,5 @@ class SearchedInverse(Mechanism):
         """The joints at every root, nearest to the reference first."""
 
     @abstractmethod
-    def _from_joints(self, joints: Reals, turns: Reals, reference: Reals) -> Reals | Status:
+    def _from_joints(self, joints: Reals, turns: Turns, reference: Reals) -> Reals | Status:
         """The axes of joints."""

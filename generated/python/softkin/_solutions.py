@@ -9,7 +9,7 @@ from typing import TypeAlias, overload
 from softkin._configuration import Slot
 from softkin._types import Reals, Solution
 
-_Make: TypeAlias = Callable[[Slot, Reals | float], Solution]
+_Make: TypeAlias = Callable[[Slot, Reals | int], Solution]
 
 
 class Solutions(Sequence[Solution]):
@@ -17,7 +17,7 @@ class Solutions(Sequence[Solution]):
 
     __slots__ = ("_found", "_make", "_slots")
 
-    def __init__(self, found: tuple[Reals | float, ...], slots: tuple[Slot, ...], make: _Make) -> None:
+    def __init__(self, found: tuple[Reals | int, ...], slots: tuple[Slot, ...], make: _Make) -> None:
         """found: of every slot the axes, or the number of its status; make: the solution of a slot."""
         self._found, self._slots, self._make = found, slots, make
 

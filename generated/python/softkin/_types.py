@@ -12,6 +12,10 @@ Vector: TypeAlias = tuple[float, float, float]
 Rotation: TypeAlias = tuple[Vector, Vector, Vector]
 """Three rows; the columns are the axes of the frame."""
 Reals: TypeAlias = tuple[float, ...]
+Signs: TypeAlias = tuple[int, ...]
+"""Of the branches: 1 for byte 1, -1 for byte 2."""
+Turns: TypeAlias = tuple[int, ...]
+"""The signed numbers of the turns of axes, 0 where one is open."""
 Matrix: TypeAlias = tuple[Reals, ...]
 Configuration: TypeAlias = tuple[int, ...]
 """The branch bytes, then a signed period number for every axis that turns more than once."""

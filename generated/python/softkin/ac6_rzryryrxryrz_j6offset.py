@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 168 additions, 184 multiplications, 44 divisions, 1 square roots, 16 sines
-    inverse: 76590 additions, 123083 multiplications, 19053 divisions, 2675 square roots, 5936 sines
-    inverse, all 16 branches open: 1224945 additions, 1968653 multiplications, 304713 divisions, 42770 square roots, 94976 sines
+    inverse: 76590 additions, 122149 multiplications, 19053 divisions, 2675 square roots, 5936 sines
+    inverse, all 16 branches open: 1224945 additions, 1953709 multiplications, 304713 divisions, 42770 square roots, 94976 sines
     the search along A6: at most 640 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
@@ -56,7 +56,19 @@ from softkin._core import Image, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, solve, sqrt
 from softkin._root import every_root, nearest_root
 from softkin._search import SearchedInverse
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 
 if TYPE_CHECKING:
     from softkin._array_programs.ac6_rzryryrxryrz_j6offset import ArrayPrograms
@@ -78,53 +90,53 @@ class Constants(NamedTuple):
     offset_a4: float
     offset_a5: float
     offset_a6: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
-    single_a1: float
+    single_a1: bool
     mid_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
-    single_a2: float
+    single_a2: bool
     mid_a2: float
     lower_a3: float
     upper_a3: float
-    unlimited_a3: float
+    unlimited_a3: bool
     lowest_a3: float
     highest_a3: float
-    single_a3: float
+    single_a3: bool
     mid_a3: float
     lower_a4: float
     upper_a4: float
-    unlimited_a4: float
+    unlimited_a4: bool
     lowest_a4: float
     highest_a4: float
-    single_a4: float
+    single_a4: bool
     mid_a4: float
     lower_a5: float
     upper_a5: float
-    unlimited_a5: float
+    unlimited_a5: bool
     lowest_a5: float
     highest_a5: float
-    single_a5: float
+    single_a5: bool
     mid_a5: float
     lower_a6: float
     upper_a6: float
-    unlimited_a6: float
+    unlimited_a6: bool
     lowest_a6: float
     highest_a6: float
-    single_a6: float
+    single_a6: bool
     mid_a6: float
     machine_scale: float
     effective_q3_tried: float
     swing_scale_q3_tried: float
-    searched: float
+    searched: bool
 
 
 class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
@@ -322,7 +334,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a1: float, offset_a2: float, offset_a3: float, offset_a4: float, offset_a5: float,
         offset_a6: float, lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float, lower_a3: float,
         upper_a3: float, lower_a4: float, upper_a4: float, lower_a5: float, upper_a5: float, lower_a6: float,
-        upper_a6: float, check_limits: float,
+        upper_a6: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (d1 >= -1e9 and d1 <= 1e9):
@@ -377,98 +389,74 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             raise self._refusal("upper_a6: A6: upper limit of the axis, both 0: no limit", upper_a6=upper_a6)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         # one value inside the limits
-        single_a1 = (
-            1.0
-            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-            else 0.0
-        )
+        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         # one value inside the limits
-        single_a2 = (
-            1.0
-            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-            else 0.0
-        )
+        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = 1.0 if abs(lower_a3) + abs(upper_a3) <= 0.0 else 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
+        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
+        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         # one value inside the limits
-        single_a3 = (
-            1.0
-            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-            else 0.0
-        )
+        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = 1.0 if abs(lower_a4) + abs(upper_a4) <= 0.0 else 0.0  # a4: no limit
+        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: no limit
         effective_lower_a4 = lower_a4
         effective_upper_a4 = upper_a4
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
-        lowest_a4 = -1e12 if unlimited_a4 > 0.0 else effective_lower_a4 - tolerance_a4
-        highest_a4 = 1e12 if unlimited_a4 > 0.0 else effective_upper_a4 + tolerance_a4
+        lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
+        highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
         # one value inside the limits
-        single_a4 = (
-            1.0
-            if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
-            else 0.0
-        )
+        single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
             raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
-        unlimited_a5 = 1.0 if abs(lower_a5) + abs(upper_a5) <= 0.0 else 0.0  # a5: no limit
+        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: no limit
         effective_lower_a5 = lower_a5
         effective_upper_a5 = upper_a5
         tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
-        lowest_a5 = -1e12 if unlimited_a5 > 0.0 else effective_lower_a5 - tolerance_a5
-        highest_a5 = 1e12 if unlimited_a5 > 0.0 else effective_upper_a5 + tolerance_a5
+        lowest_a5 = -1e12 if unlimited_a5 else effective_lower_a5 - tolerance_a5
+        highest_a5 = 1e12 if unlimited_a5 else effective_upper_a5 + tolerance_a5
         # one value inside the limits
-        single_a5 = (
-            1.0
-            if (unlimited_a5 <= 0.0) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
-            else 0.0
-        )
+        single_a5 = (not unlimited_a5) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
         mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
         if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
             raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
-        unlimited_a6 = 1.0 if abs(lower_a6) + abs(upper_a6) <= 0.0 else 0.0  # a6: no limit
+        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: no limit
         effective_lower_a6 = lower_a6
         effective_upper_a6 = upper_a6
         tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
-        lowest_a6 = -1e12 if unlimited_a6 > 0.0 else effective_lower_a6 - tolerance_a6
-        highest_a6 = 1e12 if unlimited_a6 > 0.0 else effective_upper_a6 + tolerance_a6
+        lowest_a6 = -1e12 if unlimited_a6 else effective_lower_a6 - tolerance_a6
+        highest_a6 = 1e12 if unlimited_a6 else effective_upper_a6 + tolerance_a6
         # one value inside the limits
-        single_a6 = (
-            1.0
-            if (unlimited_a6 <= 0.0) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
-            else 0.0
-        )
+        single_a6 = (not unlimited_a6) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = a1 + a2 + d4  # a length of the machine
         effective_q3_tried = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
         swing_scale_q3_tried = 2.0*a2*effective_q3_tried  # q3: law of cosines in the x_from_q1² + z_from_q1² equation
-        searched = 1.0 if abs(j6_offset_x) > 0.0 else 0.0  # whether to search along A6
+        searched = abs(j6_offset_x) > 0.0  # whether to search along A6
         return Constants(
             d1=d1, a1=a1, a2=a2, a3=a3, d4=d4, j6_offset_x=j6_offset_x, d6=d6, offset_a1=offset_a1,
             offset_a2=offset_a2, offset_a3=offset_a3, offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6,
@@ -515,7 +503,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_wrist_x_tried = goal_r12*j6_offset_x*slope_sin_q6_tried - goal_r11*j6_offset_x*slope_cos_q6_tried
         slope_wrist_y_tried = goal_r22*j6_offset_x*slope_sin_q6_tried - goal_r21*j6_offset_x*slope_cos_q6_tried
         # its reference where it is free
-        if distance_q1_tried > 1e-11*machine_scale and ((freed > 0.5) or (freed < -0.5)):
+        if freed != 0 and distance_q1_tried > 1e-11*machine_scale:
             along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
             if distance_q1_tried > 1e-11*machine_scale:
                 length_q1_tried = distance_q1_tried
@@ -533,12 +521,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_q1_tried = along_q1_tried/length_q1_tried
             across_q1_tried = wanted_shoulder*wrist_y_tried
             sin_q1_tried = across_q1_tried/length_q1_tried
-            slope_along_q1_tried = slope_wrist_x_tried*wanted_shoulder
+            slope_along_q1_tried = wanted_shoulder*slope_wrist_x_tried
             slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)/length_q1_tried
-            slope_across_q1_tried = slope_wrist_y_tried*wanted_shoulder
+            slope_across_q1_tried = wanted_shoulder*slope_wrist_y_tried
             slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)/length_q1_tried
         else:
-            chosen_q1 = freed_angle if (freed > -0.5) and (freed < 0.5) else free_a1  # q1, where it is free
+            chosen_q1 = freed_angle if freed == 0 else free_a1  # q1, where it is free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
             slope_cos_q1_tried = 0.0
@@ -583,9 +571,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             sum_q3_tried = 1.0
             slope_sum_q3_tried = 0.0
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/sum_q3_tried
+        sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
         root_of_sin_swing_q3_tried = (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
-        sin_swing_q3_tried = 2.0*root_of_sin_swing_q3_tried*side*wanted_elbow/sum_q3_tried
+        sin_swing_q3_tried = 2.0*root_of_sin_swing_q3_tried*sign_elbow_tried/sum_q3_tried
         cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
         sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
         slope_cos_swing_q3_tried = (
@@ -601,7 +590,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else 0.0
         )
         slope_sin_swing_q3_tried = (
-            (2.0*side*slope_root_of_sin_swing_q3_tried*wanted_elbow - slope_sum_q3_tried*sin_swing_q3_tried)
+            (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_sum_q3_tried*sin_swing_q3_tried)
             /sum_q3_tried
         )
         slope_cos_q3_tried = (
@@ -611,7 +600,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             a3*slope_sin_swing_q3_tried/effective_q3_tried - d4*slope_cos_swing_q3_tried/effective_q3_tried
         )
         # its reference where it is free
-        if reach_tried > 1e-11*machine_scale and ((freed > 1.5) or (freed < 0.5)):
+        if freed != 1 and reach_tried > 1e-11*machine_scale:
             arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
             arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
             # q2: linear pair in the x_from_q1 and z_from_q1 equations
@@ -646,7 +635,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             slope_cos_q2_tried = (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)/length_q2_tried
             slope_sin_q2_tried = (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)/length_q2_tried
         else:
-            chosen_q2 = freed_angle if (freed > 0.5) and (freed < 1.5) else free_a2  # q2, where it is free
+            chosen_q2 = freed_angle if freed == 1 else free_a2  # q2, where it is free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
             slope_cos_q2_tried = 0.0
@@ -713,14 +702,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # q1: of the point from its axis
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
         # its reference where it is free
-        if distance_q1_tried > 1e-11*machine_scale and ((freed > 0.5) or (freed < -0.5)):
+        if freed != 0 and distance_q1_tried > 1e-11*machine_scale:
             along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
             length_q1_tried = distance_q1_tried if distance_q1_tried > 1e-11*machine_scale else 1.0
             cos_q1_tried = along_q1_tried/length_q1_tried
             across_q1_tried = wanted_shoulder*wrist_y_tried
             sin_q1_tried = across_q1_tried/length_q1_tried
         else:
-            chosen_q1 = freed_angle if (freed > -0.5) and (freed < 0.5) else free_a1  # q1, where it is free
+            chosen_q1 = freed_angle if freed == 0 else free_a1  # q1, where it is free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
         # what the unknown links must span
@@ -736,14 +725,15 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         sum_q3_tried = both_q3_tried if both_q3_tried > 0.0 else 1.0
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/sum_q3_tried
+        sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
         sin_swing_q3_tried = (
-            2.0*(sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)*side*wanted_elbow/sum_q3_tried
+            2.0*(sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)*sign_elbow_tried/sum_q3_tried
         )
         cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
         sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
         # its reference where it is free
-        if reach_tried > 1e-11*machine_scale and ((freed > 1.5) or (freed < 0.5)):
+        if freed != 1 and reach_tried > 1e-11*machine_scale:
             arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
             arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
             # q2: linear pair in the x_from_q1 and z_from_q1 equations
@@ -759,7 +749,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_q2_tried = along_q2_tried/length_q2_tried
             sin_q2_tried = across_q2_tried/length_q2_tried
         else:
-            chosen_q2 = freed_angle if (freed > 0.5) and (freed < 1.5) else free_a2  # q2, where it is free
+            chosen_q2 = freed_angle if freed == 1 else free_a2  # q2, where it is free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
         r21_from_q1_tried = goal_r21*cos_q1_tried - goal_r11*sin_q1_tried
@@ -787,7 +777,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             arctan2(r32_from_q123_before_q6_tried + 0.0, r22_from_q123_before_q6_tried + 0.0),
             arctan2(r13_from_q123_tried + 0.0, r33_from_q1234_tried + 0.0),
             arctan2(sin_q6_tried + 0.0, cos_q6_tried + 0.0),
-            0.0,
+            0,
         )
         for _ in range(4):
             cos_q1 = cos(q1)
@@ -962,16 +952,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             size = (
                 step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4 + step_q5*step_q5 + step_q6*step_q6
             )
-            taken = 1.0 if size <= error else 0.0  # whether the error becomes smaller
-            if (error <= 1e-14) or (passes > 2.5) or (taken < 0.5):
+            taken = size <= error  # whether the error becomes smaller
+            if (not taken) or (error <= 1e-14) or (passes >= 3):
                 break
-            q1 = q1 + step_q1*taken
-            q2 = q2 + step_q2*taken
-            q3 = q3 + step_q3*taken
-            q4 = q4 + step_q4*taken
-            q5 = q5 + step_q5*taken
-            q6 = q6 + step_q6*taken
-            passes = 1.0 + passes
+            q1 = q1 + (step_q1 if taken else 0.0)
+            q2 = q2 + (step_q2 if taken else 0.0)
+            q3 = q3 + (step_q3 if taken else 0.0)
+            q4 = q4 + (step_q4 if taken else 0.0)
+            q5 = q5 + (step_q5 if taken else 0.0)
+            q6 = q6 + (step_q6 if taken else 0.0)
+            passes = 1 + passes
         else:
             return Status.UNREACHABLE
         # of the Jacobian there, positions in lengths of the machine
@@ -987,12 +977,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             (),
         )
         fits = (
-            1.0
-            if (error <= 1e-10) and ((sin(q4) if abs(j6_offset_x) > 0.0 else cos(q5))*wanted_wrist >= -1e-6) and ((a3*sin(q3) + cos(q3)*d4)*wanted_elbow/machine_scale >= -1e-6) and (
-                -0.5*determinant*machine_scale*machine_scale*wanted_crossing*wanted_elbow*wanted_shoulder
+            (error <= 1e-10) and ((sin(q4) if abs(j6_offset_x) > 0.0 else cos(q5))*wanted_wrist >= -1e-6)
+            and (wanted_elbow*(a3*sin(q3) + cos(q3)*d4)/machine_scale >= -1e-6)
+            and (wanted_shoulder*(a1 + a2*sin(q2) + a3*sin(q2 + q3) + cos(q2 + q3)*d4)/machine_scale >= -1e-6)
+            and (
+                -0.5*(wanted_crossing*wanted_elbow*wanted_shoulder)*determinant*machine_scale*machine_scale
                 /(sqrt(a3*a3 + d4*d4)*a2) >= -1e-6
-            ) and ((a1 + a2*sin(q2) + a3*sin(q2 + q3) + cos(q2 + q3)*d4)*wanted_shoulder/machine_scale >= -1e-6)
-            else 0.0
+            )
         )
         return (fits, q1, q2, q3, q4, q5, q6)
 
@@ -1008,7 +999,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             self._try_joint,
             self._finish_root,
             start,
-            looked_for > 0.5,
+            looked_for,
             (
                 free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
                 goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_elbow, wanted_shoulder,
@@ -1025,7 +1016,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         return (found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6)
 
     def _search_given(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Status:
         """What the search is given."""
         x, y, z = position
@@ -1054,7 +1045,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             sigma_elbow, sigma_shoulder, sigma_wrist,
         )
 
-    def _from_joints(self, joints: Reals, turns: Reals, reference: Reals) -> Reals | Status:
+    def _from_joints(self, joints: Reals, turns: Turns, reference: Reals) -> Reals | Status:
         """The axes of joints."""
         q1, q2, q3, q4, q5, q6 = joints
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
@@ -1078,33 +1069,33 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + q1/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + q2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
-        near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         axis_a4 = offset_a4 + q4/DEGREE  # A4: its turn
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
-        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
-        near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
+        near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
         axis_a5 = offset_a5 + q5/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
-        open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
-        near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
+        near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
         axis_a6 = offset_a6 + q6/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
@@ -1203,7 +1194,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sin_q3_tried = sin(q3)
         cos_q3_tried = cos(q3)
         margin_elbow_tried = (a3*sin_q3_tried + d4*cos_q3_tried)/effective_q3_tried
-        if searched > 0.5:
+        if searched:
             branch_shoulder = margin_shoulder_tried
             branch_elbow = margin_elbow_tried
             branch_wrist = (sin_q4 if abs(j6_offset_x) > 0.0 else cos_q5)/machine_scale
@@ -1254,7 +1245,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 if margin_shoulder_tried >= 0.0
                 else -1.0
             )*determinant*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
-            if searched > 0.5
+            if searched
             else 1.0
         )
         return (
@@ -1324,7 +1315,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -1373,7 +1364,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # q1: of the point from its axis
         distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
         # how far ahead of the axis the point is; negative: behind
-        ahead_q1_closed = distance_q1_closed*sigma_shoulder
+        ahead_q1_closed = sigma_shoulder*distance_q1_closed
         wrist_x_from_q1_closed = ahead_q1_closed - a1  # what the unknown links must span
         wrist_z_closed = z - d6*r33
         wrist_z_from_q1_closed = wrist_z_closed - d1  # what the unknown links must span
@@ -1386,7 +1377,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         one_plus_cos_q3_closed = (effective_q3_tried + reach_closed - a2)*(a2 + reach_closed - effective_q3_tried)
         sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
         # q3: out of reach
-        if not ((searched > 0.5) or (sine_square_q3_closed >= -1e-12*swing_scale_q3_tried*swing_scale_q3_tried)):
+        if not (searched or (sine_square_q3_closed >= -1e-12*swing_scale_q3_tried*swing_scale_q3_tried)):
             missing = (
                 0.5*abs(effective_q3_tried + reach_closed - a2) + 0.5*abs(a2 + reach_closed - effective_q3_tried)
                 + 0.5*abs(a2 + effective_q3_tried - reach_closed) + 0.5*abs(a2 + effective_q3_tried + reach_closed) - a2
@@ -1394,7 +1385,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # without the offset there is no second crossing
-        if not ((searched > 0.5) or (sigma_crossing > 0.0)):
+        if not (searched or (sigma_crossing > 0)):
             return Diagnosis(Status.UNREACHABLE, "without the offset there is no second crossing", 0.0)
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -1410,9 +1401,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             return Diagnosis(found, "", 0.0)
         found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
         # q6: the search along it finds no root of this branch
-        if not ((found_ > 0.5) or (searched < 0.5)):
+        if not (found_ or (not searched)):
             return Diagnosis(Status.UNREACHABLE, "A6: the search along it finds no root of this branch", 0.0)
-        if searched > 0.5:
+        if searched:
             q1 = found_q1
             q2 = found_q2
             q3 = found_q3
@@ -1467,15 +1458,15 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
             # q4: polar angle in the r33 and r23 equations; its reference where it is free
             if radius_q4_closed > 1e-11:
-                direction_x_q4_closed = r33_from_q123_closed*sigma_wrist
-                direction_y_q4_closed = -r23_from_q1_closed*sigma_wrist
+                direction_x_q4_closed = sigma_wrist*r33_from_q123_closed
+                direction_y_q4_closed = -sigma_wrist*r23_from_q1_closed
             else:
                 free_a4 = (ref_a4 - offset_a4)*DEGREE
                 direction_x_q4_closed = cos(free_a4)
                 direction_y_q4_closed = sin(free_a4)
             q4 = arctan2(direction_y_q4_closed + 0.0, direction_x_q4_closed + 0.0)
             r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
-            q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
+            q4_radius_of_q5_closed = sigma_wrist*radius_q4_closed
             q5 = arctan2(r13_from_q123_closed + 0.0, q4_radius_of_q5_closed + 0.0)
             r21_from_q1_closed = r21*cos_q1_closed - r11*sin_q1_closed
             r11_from_q1_closed = r11*cos_q1_closed + r21*sin_q1_closed
@@ -1490,33 +1481,33 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 direction_x_q4_closed*r22_from_q1_closed + direction_y_q4_closed*r32_from_q123_closed
             )
             q6 = arctan2(scaled_r21_from_q1234_closed + 0.0, scaled_r22_from_q1234_closed + 0.0)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + q1/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + q2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
-        near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         axis_a4 = offset_a4 + q4/DEGREE  # A4: its turn
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
-        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
-        near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
+        near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
         axis_a5 = offset_a5 + q5/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
-        open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
-        near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
+        near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
         axis_a6 = offset_a6 + q6/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
@@ -1815,7 +1806,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
 
     def _is_searched(self) -> bool:
         """Whether there is no closed form for this machine."""
-        return self._constants.searched > 0.5
+        return self._constants.searched
 
     def _all_joints(self, given: Reals) -> list[Reals]:
         """The joints at every root of a search."""
@@ -1828,7 +1819,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             self._try_joint,
             self._finish_root,
             start,
-            looked_for > 0.5,
+            looked_for,
             (
                 free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
                 goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_elbow, wanted_shoulder,

@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 61 additions, 54 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 265 additions, 357 multiplications, 70 divisions, 18 square roots, 28 sines
-    inverse, all 8 branches open: 1889 additions, 2541 multiplications, 497 divisions, 130 square roots, 224 sines
+    inverse: 265 additions, 351 multiplications, 70 divisions, 18 square roots, 28 sines
+    inverse, all 8 branches open: 1889 additions, 2493 multiplications, 497 divisions, 130 square roots, 224 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -45,7 +45,20 @@ from typing import TYPE_CHECKING, NamedTuple
 from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.ac6_threeparallel import unrolled
 
 if TYPE_CHECKING:
@@ -67,48 +80,48 @@ class Constants(NamedTuple):
     offset_a4: float
     offset_a5: float
     offset_a6: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
-    single_a1: float
+    single_a1: bool
     mid_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
-    single_a2: float
+    single_a2: bool
     mid_a2: float
     lower_a3: float
     upper_a3: float
-    unlimited_a3: float
+    unlimited_a3: bool
     lowest_a3: float
     highest_a3: float
-    single_a3: float
+    single_a3: bool
     mid_a3: float
     lower_a4: float
     upper_a4: float
-    unlimited_a4: float
+    unlimited_a4: bool
     lowest_a4: float
     highest_a4: float
-    single_a4: float
+    single_a4: bool
     mid_a4: float
     lower_a5: float
     upper_a5: float
-    unlimited_a5: float
+    unlimited_a5: bool
     lowest_a5: float
     highest_a5: float
-    single_a5: float
+    single_a5: bool
     mid_a5: float
     lower_a6: float
     upper_a6: float
-    unlimited_a6: float
+    unlimited_a6: bool
     lowest_a6: float
     highest_a6: float
-    single_a6: float
+    single_a6: bool
     mid_a6: float
     machine_scale: float
     rounding_q1: float
@@ -310,7 +323,7 @@ class Ac6ThreeParallel(Mechanism):
         self, d1: float, a2: float, a3: float, d4: float, d5: float, d6: float, offset_a1: float,
         offset_a2: float, offset_a3: float, offset_a4: float, offset_a5: float, offset_a6: float, lower_a1: float,
         upper_a1: float, lower_a2: float, upper_a2: float, lower_a3: float, upper_a3: float, lower_a4: float,
-        upper_a4: float, lower_a5: float, upper_a5: float, lower_a6: float, upper_a6: float, check_limits: float,
+        upper_a4: float, lower_a5: float, upper_a5: float, lower_a6: float, upper_a6: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (d1 >= -1e9 and d1 <= 1e9):
@@ -363,93 +376,69 @@ class Ac6ThreeParallel(Mechanism):
             raise self._refusal("upper_a6: A6: upper limit of the axis, both 0: no limit", upper_a6=upper_a6)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         # one value inside the limits
-        single_a1 = (
-            1.0
-            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-            else 0.0
-        )
+        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         # one value inside the limits
-        single_a2 = (
-            1.0
-            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-            else 0.0
-        )
+        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = 1.0 if abs(lower_a3) + abs(upper_a3) <= 0.0 else 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
+        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
+        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         # one value inside the limits
-        single_a3 = (
-            1.0
-            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-            else 0.0
-        )
+        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = 1.0 if abs(lower_a4) + abs(upper_a4) <= 0.0 else 0.0  # a4: no limit
+        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: no limit
         effective_lower_a4 = lower_a4
         effective_upper_a4 = upper_a4
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
-        lowest_a4 = -1e12 if unlimited_a4 > 0.0 else effective_lower_a4 - tolerance_a4
-        highest_a4 = 1e12 if unlimited_a4 > 0.0 else effective_upper_a4 + tolerance_a4
+        lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
+        highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
         # one value inside the limits
-        single_a4 = (
-            1.0
-            if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
-            else 0.0
-        )
+        single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
             raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
-        unlimited_a5 = 1.0 if abs(lower_a5) + abs(upper_a5) <= 0.0 else 0.0  # a5: no limit
+        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: no limit
         effective_lower_a5 = lower_a5
         effective_upper_a5 = upper_a5
         tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
-        lowest_a5 = -1e12 if unlimited_a5 > 0.0 else effective_lower_a5 - tolerance_a5
-        highest_a5 = 1e12 if unlimited_a5 > 0.0 else effective_upper_a5 + tolerance_a5
+        lowest_a5 = -1e12 if unlimited_a5 else effective_lower_a5 - tolerance_a5
+        highest_a5 = 1e12 if unlimited_a5 else effective_upper_a5 + tolerance_a5
         # one value inside the limits
-        single_a5 = (
-            1.0
-            if (unlimited_a5 <= 0.0) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
-            else 0.0
-        )
+        single_a5 = (not unlimited_a5) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
         mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
         if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
             raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
-        unlimited_a6 = 1.0 if abs(lower_a6) + abs(upper_a6) <= 0.0 else 0.0  # a6: no limit
+        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: no limit
         effective_lower_a6 = lower_a6
         effective_upper_a6 = upper_a6
         tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
-        lowest_a6 = -1e12 if unlimited_a6 > 0.0 else effective_lower_a6 - tolerance_a6
-        highest_a6 = 1e12 if unlimited_a6 > 0.0 else effective_upper_a6 + tolerance_a6
+        lowest_a6 = -1e12 if unlimited_a6 else effective_lower_a6 - tolerance_a6
+        highest_a6 = 1e12 if unlimited_a6 else effective_upper_a6 + tolerance_a6
         # one value inside the limits
-        single_a6 = (
-            1.0
-            if (unlimited_a6 <= 0.0) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
-            else 0.0
-        )
+        single_a6 = (not unlimited_a6) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = abs(a2) + abs(a3)  # a length of the machine
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
@@ -609,7 +598,7 @@ class Ac6ThreeParallel(Mechanism):
         )
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -686,16 +675,16 @@ class Ac6ThreeParallel(Mechanism):
                 r21_from_q1_before_q1_for_q3*r21_from_q1_before_q1_for_q3
                 + r22_from_q1_before_q1_for_q3*r22_from_q1_before_q1_for_q3
             )
-            q6_radius_of_q5_before_q1_for_q3 = radius_q6_before_q1_for_q3*sigma_wrist
+            q6_radius_of_q5_before_q1_for_q3 = sigma_wrist*radius_q6_before_q1_for_q3
             cos_q5_before_q1_for_q3 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3
             r21_from_q1_rate_q1_for_q3 = -r11*cos_q1_before_q1_for_q3 - r21*sin_q1_before_q1_for_q3
             r22_from_q1_rate_q1_for_q3 = -r12*cos_q1_before_q1_for_q3 - r22*sin_q1_before_q1_for_q3
-            along_q6_rate_q1_for_q3 = -r21_from_q1_rate_q1_for_q3*sigma_wrist
-            across_q6_rate_q1_for_q3 = r22_from_q1_rate_q1_for_q3*sigma_wrist
+            along_q6_rate_q1_for_q3 = -sigma_wrist*r21_from_q1_rate_q1_for_q3
+            across_q6_rate_q1_for_q3 = sigma_wrist*r22_from_q1_rate_q1_for_q3
             if radius_q6_before_q1_for_q3 > 1e-11:
-                along_q6_before_q1_for_q3 = -r21_from_q1_before_q1_for_q3*sigma_wrist
+                along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
                 cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
-                across_q6_before_q1_for_q3 = r22_from_q1_before_q1_for_q3*sigma_wrist
+                across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
                 sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
                 radius_q6_rate_q1_for_q3 = (
                     0.5
@@ -752,7 +741,7 @@ class Ac6ThreeParallel(Mechanism):
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
                 r23_from_q1_rate_q1_for_q3 = -r13*cos_q1_before_q1_for_q3 - r23*sin_q1_before_q1_for_q3
-                q6_radius_of_q5_rate_q1_for_q3 = radius_q6_rate_q1_for_q3*sigma_wrist
+                q6_radius_of_q5_rate_q1_for_q3 = sigma_wrist*radius_q6_rate_q1_for_q3
                 r21_from_q1_before_q6_rate_q1_for_q3 = r31*cos_q6_rate_q1_for_q3 - r32*sin_q6_rate_q1_for_q3
                 r21_from_q1_before_q56_rate_q1_for_q3 = (
                     r21_from_q1_before_q6_rate_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_rate_q1_for_q3*r33
@@ -766,162 +755,165 @@ class Ac6ThreeParallel(Mechanism):
                     2.0*wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
                     + 2.0*wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
                 )
-                along_q6_q1_for_q3 = (
-                    2.0*d5*r32*wrist_z - 2.0*d1*d5*r32 - 2.0*ahead_q1_before_q1_for_q3*d5*r31*cos_q5_before_q1_for_q3
-                )
-                across_q6_q1_for_q3 = (
-                    2.0*d5*r31*wrist_z + 2.0*ahead_q1_before_q1_for_q3*d5*r32*cos_q5_before_q1_for_q3 - 2.0*d1*d5*r31
-                )
-                swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3 + along_q6_q1_for_q3*along_q6_q1_for_q3)
-                # the arc: cosines from its centre
-                if swing_q6_q1_for_q3 > 9.999999000000001e-13*size_q1_for_q3:
-                    level_q6_q1_for_q3 = (
-                        value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3 - along_q6_q1_for_q3*cos_q6_before_q1_for_q3
-                    )
-                    highest_q6_q1_for_q3 = (
-                        1.0
-                        if (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 > 1.0
-                        else (
-                            -1.0
-                            if (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 < -1.0
-                            else (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3
-                        )
-                    )
-                    lowest_q6_q1_for_q3 = (
-                        1.0
-                        if (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 > 1.0
-                        else (
-                            -1.0
-                            if (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 < -1.0
-                            else (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3
-                        )
-                    )
-                else:
-                    highest_q6_q1_for_q3 = 1.0
-                    lowest_q6_q1_for_q3 = -1.0
-                near_q6_q1_for_q3 = arctan2(
-                    root((1.0 - highest_q6_q1_for_q3)*(1.0 + highest_q6_q1_for_q3)) + 0.0, highest_q6_q1_for_q3 + 0.0,
-                )
-                far_q6_q1_for_q3 = arctan2(
-                    root((1.0 - lowest_q6_q1_for_q3)*(1.0 + lowest_q6_q1_for_q3)) + 0.0, lowest_q6_q1_for_q3 + 0.0,
-                )
-                centre_q6_q1_for_q3 = arctan2(across_q6_q1_for_q3 + 0.0, along_q6_q1_for_q3 + 0.0)
-                angle_q6_q1_for_q3 = arctan2(sin_q6_before_q1_for_q3 + 0.0, cos_q6_before_q1_for_q3 + 0.0)
-                side_q6_q1_for_q3 = (
-                    1.0
-                    if along_q6_q1_for_q3*sin_q6_before_q1_for_q3 - across_q6_q1_for_q3*cos_q6_before_q1_for_q3 >= 0.0
-                    else -1.0
-                )
-                moved_q6_q1_for_q3 = nearest_on_arc(
-                    angle_q6_q1_for_q3, centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
-                    0.5*far_q6_q1_for_q3 - 0.5*near_q6_q1_for_q3,
-                )
-                near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
-                near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
-                near_q_q1_for_q3 = near_cos_q6_q1_for_q3*r12*sigma_wrist + near_sin_q6_q1_for_q3*r11*sigma_wrist
-                near_p_q1_for_q3 = -near_cos_q6_q1_for_q3*r22*sigma_wrist - near_sin_q6_q1_for_q3*r21*sigma_wrist
-                near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
-                # the earlier angle follows
-                # it stays where every angle gives this one
-                if near_radius_q1_for_q3 > 1e-12:
-                    near_along_q1_for_q3 = (
-                        (near_cos_q6_q1_for_q3*r11*sigma_wrist - near_sin_q6_q1_for_q3*r12*sigma_wrist)*near_p_q1_for_q3
-                        - (near_sin_q6_q1_for_q3*r22*sigma_wrist - near_cos_q6_q1_for_q3*r21*sigma_wrist)*near_q_q1_for_q3
-                    )
-                    # of two opposite ways
-                    near_towards_q1_for_q3 = (
-                        near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3
-                        if abs(near_along_q1_for_q3) <= 5e-12*near_radius_q1_for_q3
-                        else near_along_q1_for_q3
-                    )
-                    near_side_q1_for_q3 = -1.0 if near_towards_q1_for_q3 < 0.0 else 1.0
-                    near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
-                    near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
-                else:
-                    near_cos_q1_for_q3 = cos_q1_before_q1_for_q3
-                    near_sin_q1_for_q3 = sin_q1_before_q1_for_q3
-                if distance_q1 > 1e-11*machine_scale:
-                    near_cost_q1_for_q3 = abs(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
-                    mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
-                    mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
-                    mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
-                    mirrored_q_q1_for_q3 = mirrored_cos_q6_q1_for_q3*r12*sigma_wrist + mirrored_sin_q6_q1_for_q3*r11*sigma_wrist
-                    mirrored_p_q1_for_q3 = -mirrored_cos_q6_q1_for_q3*r22*sigma_wrist - mirrored_sin_q6_q1_for_q3*r21*sigma_wrist
-                    mirrored_radius_q1_for_q3 = sqrt(
-                        mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
-                    )
-                    # the earlier angle follows
-                    # it stays where every angle gives this one
-                    if mirrored_radius_q1_for_q3 > 1e-12:
-                        mirrored_along_q1_for_q3 = (
-                            (
-                                mirrored_cos_q6_q1_for_q3*r11*sigma_wrist - mirrored_sin_q6_q1_for_q3*r12*sigma_wrist
-                            )*mirrored_p_q1_for_q3
-                            - (
-                                mirrored_sin_q6_q1_for_q3*r22*sigma_wrist - mirrored_cos_q6_q1_for_q3*r21*sigma_wrist
-                            )*mirrored_q_q1_for_q3
-                        )
-                        # of two opposite ways
-                        mirrored_towards_q1_for_q3 = (
-                            mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3
-                            if abs(mirrored_along_q1_for_q3) <= 5e-12*mirrored_radius_q1_for_q3
-                            else mirrored_along_q1_for_q3
-                        )
-                        mirrored_side_q1_for_q3 = -1.0 if mirrored_towards_q1_for_q3 < 0.0 else 1.0
-                        mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
-                        mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
-                    else:
-                        mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3
-                        mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3
-                    mirrored_cost_q1_for_q3 = abs(d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
-                    if near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3:
-                        swept_cost_q1_for_q3 = near_cost_q1_for_q3
-                        swept_cos_q1_for_q3 = near_cos_q1_for_q3
-                        swept_sin_q1_for_q3 = near_sin_q1_for_q3
-                    else:
-                        swept_cost_q1_for_q3 = mirrored_cost_q1_for_q3
-                        swept_cos_q1_for_q3 = mirrored_cos_q1_for_q3
-                        swept_sin_q1_for_q3 = mirrored_sin_q1_for_q3
-                else:
-                    swept_cost_q1_for_q3 = 0.0
-                    swept_cos_q1_for_q3 = near_cos_q1_for_q3
-                    swept_sin_q1_for_q3 = near_sin_q1_for_q3
-                swept_ahead_q1_for_q3 = swept_cos_q1_for_q3*wrist_x + swept_sin_q1_for_q3*wrist_y
+                # to the boundary of the later step
                 if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
                     excess_q1_for_q3 = (
                         value_q1_for_q3 - size_q1_for_q3
                         if value_q1_for_q3 > 0.0
                         else size_q1_for_q3 + value_q1_for_q3
                     )
-                    turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
-                    if (turn_q1_for_q3*turn_q1_for_q3 > 1e-12) or (
+                    turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+                else:
+                    turn_q1_for_q3 = 1.0
+                # whether it follows q6
+                follows_q1_for_q3 = (
+                    (turn_q1_for_q3*turn_q1_for_q3 > 1e-12)
+                    or (
                         (across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3 + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3)
                         *turn_q1_for_q3*turn_q1_for_q3 > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
-                    ):
-                        best_cost_q1_for_q3 = swept_cost_q1_for_q3
-                        best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
-                        best_cos_q1_for_q3 = swept_cos_q1_for_q3
-                        best_sin_q1_for_q3 = swept_sin_q1_for_q3
+                    )
+                )
+                if follows_q1_for_q3:
+                    along_q6_q1_for_q3 = (
+                        2.0*d5*r32*wrist_z - 2.0*d1*d5*r32 - 2.0*ahead_q1_before_q1_for_q3*d5*r31*cos_q5_before_q1_for_q3
+                    )
+                    across_q6_q1_for_q3 = (
+                        2.0*d5*r31*wrist_z + 2.0*ahead_q1_before_q1_for_q3*d5*r32*cos_q5_before_q1_for_q3 - 2.0*d1*d5*r31
+                    )
+                    swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3 + along_q6_q1_for_q3*along_q6_q1_for_q3)
+                    # the arc: cosines from its centre
+                    if swing_q6_q1_for_q3 > 9.999999000000001e-13*size_q1_for_q3:
+                        level_q6_q1_for_q3 = (
+                            value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3 - along_q6_q1_for_q3*cos_q6_before_q1_for_q3
+                        )
+                        highest_q6_q1_for_q3 = (
+                            1.0
+                            if (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 > 1.0
+                            else (
+                                -1.0
+                                if (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 < -1.0
+                                else (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3
+                            )
+                        )
+                        lowest_q6_q1_for_q3 = (
+                            1.0
+                            if (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 > 1.0
+                            else (
+                                -1.0
+                                if (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 < -1.0
+                                else (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3
+                            )
+                        )
                     else:
-                        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-                        turned_cos_q1_for_q3 = (
-                            (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                        highest_q6_q1_for_q3 = 1.0
+                        lowest_q6_q1_for_q3 = -1.0
+                    near_q6_q1_for_q3 = arctan2(
+                        root((1.0 - highest_q6_q1_for_q3)*(1.0 + highest_q6_q1_for_q3)) + 0.0, highest_q6_q1_for_q3 + 0.0,
+                    )
+                    far_q6_q1_for_q3 = arctan2(
+                        root((1.0 - lowest_q6_q1_for_q3)*(1.0 + lowest_q6_q1_for_q3)) + 0.0, lowest_q6_q1_for_q3 + 0.0,
+                    )
+                    centre_q6_q1_for_q3 = arctan2(across_q6_q1_for_q3 + 0.0, along_q6_q1_for_q3 + 0.0)
+                    angle_q6_q1_for_q3 = arctan2(sin_q6_before_q1_for_q3 + 0.0, cos_q6_before_q1_for_q3 + 0.0)
+                    side_q6_q1_for_q3 = (
+                        1.0
+                        if along_q6_q1_for_q3*sin_q6_before_q1_for_q3 - across_q6_q1_for_q3*cos_q6_before_q1_for_q3 >= 0.0
+                        else -1.0
+                    )
+                    moved_q6_q1_for_q3 = nearest_on_arc(
+                        angle_q6_q1_for_q3, centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
+                        0.5*far_q6_q1_for_q3 - 0.5*near_q6_q1_for_q3,
+                    )
+                    near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
+                    near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
+                    near_q_q1_for_q3 = sigma_wrist*near_cos_q6_q1_for_q3*r12 + sigma_wrist*near_sin_q6_q1_for_q3*r11
+                    near_p_q1_for_q3 = -sigma_wrist*near_cos_q6_q1_for_q3*r22 - sigma_wrist*near_sin_q6_q1_for_q3*r21
+                    near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
+                    # the earlier angle follows
+                    # it stays where every angle gives this one
+                    if near_radius_q1_for_q3 > 1e-12:
+                        near_along_q1_for_q3 = (
+                            (sigma_wrist*near_cos_q6_q1_for_q3*r11 - sigma_wrist*near_sin_q6_q1_for_q3*r12)*near_p_q1_for_q3
+                            - (sigma_wrist*near_sin_q6_q1_for_q3*r22 - sigma_wrist*near_cos_q6_q1_for_q3*r21)*near_q_q1_for_q3
                         )
-                        turned_sin_q1_for_q3 = (
-                            (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                        # of two opposite ways
+                        near_towards_q1_for_q3 = (
+                            near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3
+                            if abs(near_along_q1_for_q3) <= 5e-12*near_radius_q1_for_q3
+                            else near_along_q1_for_q3
                         )
-                        # what is left of its own equation
-                        turned_cost_q1_for_q3 = abs(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
-                        best_cost_q1_for_q3 = turned_cost_q1_for_q3
-                        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)/turned_length_q1_for_q3
-                        best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
-                        best_cos_q1_for_q3 = turned_cos_q1_for_q3
-                        best_sin_q1_for_q3 = turned_sin_q1_for_q3
-                else:
+                        near_side_q1_for_q3 = -1.0 if near_towards_q1_for_q3 < 0.0 else 1.0
+                        near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
+                        near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
+                    else:
+                        near_cos_q1_for_q3 = cos_q1_before_q1_for_q3
+                        near_sin_q1_for_q3 = sin_q1_before_q1_for_q3
+                    if distance_q1 > 1e-11*machine_scale:
+                        near_cost_q1_for_q3 = abs(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
+                        mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
+                        mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
+                        mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
+                        mirrored_q_q1_for_q3 = sigma_wrist*mirrored_cos_q6_q1_for_q3*r12 + sigma_wrist*mirrored_sin_q6_q1_for_q3*r11
+                        mirrored_p_q1_for_q3 = -sigma_wrist*mirrored_cos_q6_q1_for_q3*r22 - sigma_wrist*mirrored_sin_q6_q1_for_q3*r21
+                        mirrored_radius_q1_for_q3 = sqrt(
+                            mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
+                        )
+                        # the earlier angle follows
+                        # it stays where every angle gives this one
+                        if mirrored_radius_q1_for_q3 > 1e-12:
+                            mirrored_along_q1_for_q3 = (
+                                (
+                                    sigma_wrist*mirrored_cos_q6_q1_for_q3*r11 - sigma_wrist*mirrored_sin_q6_q1_for_q3*r12
+                                )*mirrored_p_q1_for_q3
+                                - (
+                                    sigma_wrist*mirrored_sin_q6_q1_for_q3*r22 - sigma_wrist*mirrored_cos_q6_q1_for_q3*r21
+                                )*mirrored_q_q1_for_q3
+                            )
+                            # of two opposite ways
+                            mirrored_towards_q1_for_q3 = (
+                                mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3
+                                if abs(mirrored_along_q1_for_q3) <= 5e-12*mirrored_radius_q1_for_q3
+                                else mirrored_along_q1_for_q3
+                            )
+                            mirrored_side_q1_for_q3 = -1.0 if mirrored_towards_q1_for_q3 < 0.0 else 1.0
+                            mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                            mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                        else:
+                            mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3
+                            mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3
+                        mirrored_cost_q1_for_q3 = abs(d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
+                        if near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3:
+                            swept_cost_q1_for_q3 = near_cost_q1_for_q3
+                            swept_cos_q1_for_q3 = near_cos_q1_for_q3
+                            swept_sin_q1_for_q3 = near_sin_q1_for_q3
+                        else:
+                            swept_cost_q1_for_q3 = mirrored_cost_q1_for_q3
+                            swept_cos_q1_for_q3 = mirrored_cos_q1_for_q3
+                            swept_sin_q1_for_q3 = mirrored_sin_q1_for_q3
+                    else:
+                        swept_cost_q1_for_q3 = 0.0
+                        swept_cos_q1_for_q3 = near_cos_q1_for_q3
+                        swept_sin_q1_for_q3 = near_sin_q1_for_q3
                     best_cost_q1_for_q3 = swept_cost_q1_for_q3
+                    swept_ahead_q1_for_q3 = swept_cos_q1_for_q3*wrist_x + swept_sin_q1_for_q3*wrist_y
                     best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
                     best_cos_q1_for_q3 = swept_cos_q1_for_q3
                     best_sin_q1_for_q3 = swept_sin_q1_for_q3
+                else:
+                    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                    turned_cos_q1_for_q3 = (
+                        (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                    )
+                    turned_sin_q1_for_q3 = (
+                        (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                    )
+                    # what is left of its own equation
+                    turned_cost_q1_for_q3 = abs(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
+                    best_cost_q1_for_q3 = turned_cost_q1_for_q3
+                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)/turned_length_q1_for_q3
+                    best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
+                    best_cos_q1_for_q3 = turned_cos_q1_for_q3
+                    best_sin_q1_for_q3 = turned_sin_q1_for_q3
                 # turned within rounding, where the rest can be reached
                 if best_cost_q1_for_q3 > 1e-12*machine_scale:
                     ahead_q1 = ahead_q1_before_q1_for_q3
@@ -935,12 +927,12 @@ class Ac6ThreeParallel(Mechanism):
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
-        q6_radius_of_q5 = radius_q6*sigma_wrist
+        q6_radius_of_q5 = sigma_wrist*radius_q6
         # its reference where it is free
         if radius_q6 > 1e-11:
-            along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
+            along_q6 = -sigma_wrist*r21_from_q1  # q6: polar angle in the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6/radius_q6
-            across_q6 = r22_from_q1*sigma_wrist
+            across_q6 = sigma_wrist*r22_from_q1
             sin_q6_before_q6_of_q3 = across_q6/radius_q6
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -1028,8 +1020,9 @@ class Ac6ThreeParallel(Mechanism):
                     )
                     *radius_q6
                 )
+                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
                 # kept where the rest can be reached
-                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3
                     sin_q6 = sin_q6_before_q6_of_q3
                 else:
@@ -1051,8 +1044,8 @@ class Ac6ThreeParallel(Mechanism):
                 - reach - abs(a2) - abs(a3)
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
@@ -1071,31 +1064,31 @@ class Ac6ThreeParallel(Mechanism):
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
         angle_q2 = arctan2(direction_y_q2 + 0.0, direction_x_q2 + 0.0)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + angle_q2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_q3 = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         angle_with_q4 = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
-        near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)/DEGREE
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
-        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
-        near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
+        near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
         axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
-        open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
-        near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
+        near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
         axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
@@ -1345,13 +1338,13 @@ class Ac6ThreeParallel(Mechanism):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference) or super().branches(frame, reference)  # near a fold one after the other
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         found = solve(frame, signs, reference)
         return super().branch(frame, signs, reference) if found == () else found  # near a fold with all that it takes
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference) or super()._every_branch(position, rotation, reference)
 

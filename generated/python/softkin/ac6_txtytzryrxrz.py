@@ -22,8 +22,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 31 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
-    inverse: 82 additions, 76 multiplications, 18 divisions, 3 square roots, 5 sines
-    inverse, all 2 branches open: 131 additions, 107 multiplications, 27 divisions, 4 square roots, 10 sines
+    inverse: 82 additions, 73 multiplications, 18 divisions, 3 square roots, 5 sines
+    inverse, all 2 branches open: 131 additions, 101 multiplications, 27 divisions, 4 square roots, 10 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -38,7 +38,20 @@ from typing import TYPE_CHECKING, NamedTuple
 from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.ac6_txtytzryrxrz import unrolled
 
 if TYPE_CHECKING:
@@ -57,42 +70,42 @@ class Constants(NamedTuple):
     offset_a4: float
     offset_a5: float
     offset_a6: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
     lower_a3: float
     upper_a3: float
-    unlimited_a3: float
+    unlimited_a3: bool
     lowest_a3: float
     highest_a3: float
     lower_a4: float
     upper_a4: float
-    unlimited_a4: float
+    unlimited_a4: bool
     lowest_a4: float
     highest_a4: float
-    single_a4: float
+    single_a4: bool
     mid_a4: float
     lower_a5: float
     upper_a5: float
-    unlimited_a5: float
+    unlimited_a5: bool
     lowest_a5: float
     highest_a5: float
-    single_a5: float
+    single_a5: bool
     mid_a5: float
     lower_a6: float
     upper_a6: float
-    unlimited_a6: float
+    unlimited_a6: bool
     lowest_a6: float
     highest_a6: float
-    single_a6: float
+    single_a6: bool
     mid_a6: float
     machine_scale: float
 
@@ -271,7 +284,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         self, flange_x: float, flange_y: float, flange_z: float, offset_a1: float, offset_a2: float,
         offset_a3: float, offset_a4: float, offset_a5: float, offset_a6: float, lower_a1: float, upper_a1: float,
         lower_a2: float, upper_a2: float, lower_a3: float, upper_a3: float, lower_a4: float, upper_a4: float,
-        lower_a5: float, upper_a5: float, lower_a6: float, upper_a6: float, check_limits: float,
+        lower_a5: float, upper_a5: float, lower_a6: float, upper_a6: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (flange_x >= -1e9 and flange_x <= 1e9):
@@ -318,72 +331,60 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
             raise self._refusal("upper_a6: A6: upper limit of the axis, both 0: no limit", upper_a6=upper_a6)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = 1.0 if abs(lower_a3) + abs(upper_a3) <= 0.0 else 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
+        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
+        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = 1.0 if abs(lower_a4) + abs(upper_a4) <= 0.0 else 0.0  # a4: no limit
+        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: no limit
         effective_lower_a4 = lower_a4
         effective_upper_a4 = upper_a4
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
-        lowest_a4 = -1e12 if unlimited_a4 > 0.0 else effective_lower_a4 - tolerance_a4
-        highest_a4 = 1e12 if unlimited_a4 > 0.0 else effective_upper_a4 + tolerance_a4
+        lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
+        highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
         # one value inside the limits
-        single_a4 = (
-            1.0
-            if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
-            else 0.0
-        )
+        single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
             raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
-        unlimited_a5 = 1.0 if abs(lower_a5) + abs(upper_a5) <= 0.0 else 0.0  # a5: no limit
+        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: no limit
         effective_lower_a5 = lower_a5
         effective_upper_a5 = upper_a5
         tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
-        lowest_a5 = -1e12 if unlimited_a5 > 0.0 else effective_lower_a5 - tolerance_a5
-        highest_a5 = 1e12 if unlimited_a5 > 0.0 else effective_upper_a5 + tolerance_a5
+        lowest_a5 = -1e12 if unlimited_a5 else effective_lower_a5 - tolerance_a5
+        highest_a5 = 1e12 if unlimited_a5 else effective_upper_a5 + tolerance_a5
         # one value inside the limits
-        single_a5 = (
-            1.0
-            if (unlimited_a5 <= 0.0) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
-            else 0.0
-        )
+        single_a5 = (not unlimited_a5) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
         mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
         if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
             raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
-        unlimited_a6 = 1.0 if abs(lower_a6) + abs(upper_a6) <= 0.0 else 0.0  # a6: no limit
+        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: no limit
         effective_lower_a6 = lower_a6
         effective_upper_a6 = upper_a6
         tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
-        lowest_a6 = -1e12 if unlimited_a6 > 0.0 else effective_lower_a6 - tolerance_a6
-        highest_a6 = 1e12 if unlimited_a6 > 0.0 else effective_upper_a6 + tolerance_a6
+        lowest_a6 = -1e12 if unlimited_a6 else effective_lower_a6 - tolerance_a6
+        highest_a6 = 1e12 if unlimited_a6 else effective_upper_a6 + tolerance_a6
         # one value inside the limits
-        single_a6 = (
-            1.0
-            if (unlimited_a6 <= 0.0) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
-            else 0.0
-        )
+        single_a6 = (not unlimited_a6) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = 1.0  # a length of the machine
         return Constants(
@@ -488,7 +489,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         return ((r11_at_a6, r12_at_a6, r13_at_a5), (r21_at_a6, r22_at_a6, r23), (r31_at_a6, r32_at_a6, r33_at_a5))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -527,28 +528,28 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
         # a4: polar angle in the r33 and r13 equations; its reference where it is free
         if radius_a4 > 1e-11:
-            direction_x_a4 = r33*sigma_wrist
-            direction_y_a4 = r13*sigma_wrist
+            direction_x_a4 = sigma_wrist*r33
+            direction_y_a4 = sigma_wrist*r13
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             direction_x_a4 = cos(free_a4)
             direction_y_a4 = sin(free_a4)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
-        near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4 + 0.0)/DEGREE  # A4: its turn
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
-        a4_radius_of_a5 = radius_a4*sigma_wrist
+        a4_radius_of_a5 = sigma_wrist*radius_a4
         sin_a5 = -r23
-        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
-        near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
+        near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
         axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
         direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
-        open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
-        near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
+        near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
         axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
@@ -703,12 +704,12 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 66 additions, 68 multiplications, 8 divisions, 0 square roots, 14 sines
-    inverse: 158 additions, 171 multiplications, 41 divisions, 9 square roots, 12 sines
-    inverse, all 8 branches open: 1033 additions, 1053 multiplications, 265 divisions, 58 square roots, 96 sines
+    inverse: 158 additions, 165 multiplications, 41 divisions, 9 square roots, 12 sines
+    inverse, all 8 branches open: 1033 additions, 1005 multiplications, 265 divisions, 58 square roots, 96 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -45,7 +45,20 @@ from typing import TYPE_CHECKING, NamedTuple
 from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.articulatedrobot_6dof import unrolled
 
 if TYPE_CHECKING:
@@ -68,48 +81,48 @@ class Constants(NamedTuple):
     offset_a4: float
     offset_a5: float
     offset_a6: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
-    single_a1: float
+    single_a1: bool
     mid_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
-    single_a2: float
+    single_a2: bool
     mid_a2: float
     lower_a3: float
     upper_a3: float
-    unlimited_a3: float
+    unlimited_a3: bool
     lowest_a3: float
     highest_a3: float
-    single_a3: float
+    single_a3: bool
     mid_a3: float
     lower_a4: float
     upper_a4: float
-    unlimited_a4: float
+    unlimited_a4: bool
     lowest_a4: float
     highest_a4: float
-    single_a4: float
+    single_a4: bool
     mid_a4: float
     lower_a5: float
     upper_a5: float
-    unlimited_a5: float
+    unlimited_a5: bool
     lowest_a5: float
     highest_a5: float
-    single_a5: float
+    single_a5: bool
     mid_a5: float
     lower_a6: float
     upper_a6: float
-    unlimited_a6: float
+    unlimited_a6: bool
     lowest_a6: float
     highest_a6: float
-    single_a6: float
+    single_a6: bool
     mid_a6: float
     machine_scale: float
     effective_q3: float
@@ -317,7 +330,7 @@ class ArticulatedRobot6DOF(Mechanism):
         self, d1: float, a1: float, a2: float, d3: float, a3: float, d4: float, d6: float, offset_a1: float,
         offset_a2: float, offset_a3: float, offset_a4: float, offset_a5: float, offset_a6: float, lower_a1: float,
         upper_a1: float, lower_a2: float, upper_a2: float, lower_a3: float, upper_a3: float, lower_a4: float,
-        upper_a4: float, lower_a5: float, upper_a5: float, lower_a6: float, upper_a6: float, check_limits: float,
+        upper_a4: float, lower_a5: float, upper_a5: float, lower_a6: float, upper_a6: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (d1 >= -1e9 and d1 <= 1e9):
@@ -372,93 +385,69 @@ class ArticulatedRobot6DOF(Mechanism):
             raise self._refusal("upper_a6: A6: upper limit of the axis, both 0: no limit", upper_a6=upper_a6)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         # one value inside the limits
-        single_a1 = (
-            1.0
-            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-            else 0.0
-        )
+        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         # one value inside the limits
-        single_a2 = (
-            1.0
-            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-            else 0.0
-        )
+        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = 1.0 if abs(lower_a3) + abs(upper_a3) <= 0.0 else 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
+        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
+        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         # one value inside the limits
-        single_a3 = (
-            1.0
-            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-            else 0.0
-        )
+        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = 1.0 if abs(lower_a4) + abs(upper_a4) <= 0.0 else 0.0  # a4: no limit
+        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: no limit
         effective_lower_a4 = lower_a4
         effective_upper_a4 = upper_a4
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
-        lowest_a4 = -1e12 if unlimited_a4 > 0.0 else effective_lower_a4 - tolerance_a4
-        highest_a4 = 1e12 if unlimited_a4 > 0.0 else effective_upper_a4 + tolerance_a4
+        lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
+        highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
         # one value inside the limits
-        single_a4 = (
-            1.0
-            if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
-            else 0.0
-        )
+        single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
             raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
-        unlimited_a5 = 1.0 if abs(lower_a5) + abs(upper_a5) <= 0.0 else 0.0  # a5: no limit
+        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: no limit
         effective_lower_a5 = lower_a5
         effective_upper_a5 = upper_a5
         tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
-        lowest_a5 = -1e12 if unlimited_a5 > 0.0 else effective_lower_a5 - tolerance_a5
-        highest_a5 = 1e12 if unlimited_a5 > 0.0 else effective_upper_a5 + tolerance_a5
+        lowest_a5 = -1e12 if unlimited_a5 else effective_lower_a5 - tolerance_a5
+        highest_a5 = 1e12 if unlimited_a5 else effective_upper_a5 + tolerance_a5
         # one value inside the limits
-        single_a5 = (
-            1.0
-            if (unlimited_a5 <= 0.0) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
-            else 0.0
-        )
+        single_a5 = (not unlimited_a5) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
         mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
         if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
             raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
-        unlimited_a6 = 1.0 if abs(lower_a6) + abs(upper_a6) <= 0.0 else 0.0  # a6: no limit
+        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: no limit
         effective_lower_a6 = lower_a6
         effective_upper_a6 = upper_a6
         tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
-        lowest_a6 = -1e12 if unlimited_a6 > 0.0 else effective_lower_a6 - tolerance_a6
-        highest_a6 = 1e12 if unlimited_a6 > 0.0 else effective_upper_a6 + tolerance_a6
+        lowest_a6 = -1e12 if unlimited_a6 else effective_lower_a6 - tolerance_a6
+        highest_a6 = 1e12 if unlimited_a6 else effective_upper_a6 + tolerance_a6
         # one value inside the limits
-        single_a6 = (
-            1.0
-            if (unlimited_a6 <= 0.0) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
-            else 0.0
-        )
+        single_a6 = (not unlimited_a6) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = a1 + a2 + a3 + d4  # a length of the machine
         effective_q3 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
@@ -636,7 +625,7 @@ class ArticulatedRobot6DOF(Mechanism):
         )
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -773,8 +762,8 @@ class ArticulatedRobot6DOF(Mechanism):
                 else:
                     cos_q1 = turned_cos_q1_for_q3
                     sin_q1 = turned_sin_q1_for_q3
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
@@ -800,15 +789,15 @@ class ArticulatedRobot6DOF(Mechanism):
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2 = cos(free_a2)
             sin_q2 = sin(free_a2)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
         sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
@@ -821,21 +810,21 @@ class ArticulatedRobot6DOF(Mechanism):
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            direction_x_q4 = -r13_from_q123*sigma_hand
-            direction_y_q4 = r23_from_q1*sigma_hand
+            direction_x_q4 = -sigma_hand*r13_from_q123
+            direction_y_q4 = sigma_hand*r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             direction_x_q4 = cos(free_a4)
             direction_y_q4 = sin(free_a4)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
-        near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4 + 0.0)/DEGREE  # A4: its turn
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
-        q4_radius_of_q5 = radius_q4*sigma_hand
+        q4_radius_of_q5 = sigma_hand*radius_q4
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
-        near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
+        near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
         axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
@@ -847,8 +836,8 @@ class ArticulatedRobot6DOF(Mechanism):
         r12_from_q1 = r12*cos_q1 + r22*sin_q1
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         scaled_r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
-        open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
-        near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
+        near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
         axis_a6 = offset_a6 + arctan2(scaled_r21_from_q1234, scaled_r22_from_q1234 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
@@ -1108,13 +1097,13 @@ class ArticulatedRobot6DOF(Mechanism):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference) or super().branches(frame, reference)  # near a fold one after the other
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         found = solve(frame, signs, reference)
         return super().branch(frame, signs, reference) if found == () else found  # near a fold with all that it takes
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference) or super()._every_branch(position, rotation, reference)
 

@@ -14,7 +14,7 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 5 additions, 1 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 44 additions, 50 multiplications, 12 divisions, 3 square roots, 1 sines
+    inverse: 44 additions, 49 multiplications, 12 divisions, 3 square roots, 1 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -31,7 +31,20 @@ from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.caxis import unrolled
 
 if TYPE_CHECKING:
@@ -42,13 +55,13 @@ class Constants(NamedTuple):
     """What depends on the parameters alone: computed once, read by every program."""
 
     offset_c: float
-    check_limits: float
+    check_limits: bool
     lower_c: float
     upper_c: float
-    unlimited_c: float
+    unlimited_c: bool
     lowest_c: float
     highest_c: float
-    single_c: float
+    single_c: bool
     mid_c: float
     machine_scale: float
 
@@ -113,7 +126,7 @@ class CAxis(OrientationKinematics, TwistChoice):
             tested = tested._replace(lowest_c=-1e12, highest_c=1e12)
         self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
 
-    def _setup(self, offset_c: float, lower_c: float, upper_c: float, check_limits: float) -> Constants:
+    def _setup(self, offset_c: float, lower_c: float, upper_c: float, check_limits: bool) -> Constants:
         """The constants of the machine."""
         if not (offset_c >= -1e9 and offset_c <= 1e9):
             raise self._refusal("offset_c: C: axis value at the kinematic zero position", offset_c=offset_c)
@@ -123,18 +136,14 @@ class CAxis(OrientationKinematics, TwistChoice):
             raise self._refusal("upper_c: C: upper limit of the axis, both 0: no limit", upper_c=upper_c)
         if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
             raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
-        unlimited_c = 1.0 if abs(lower_c) + abs(upper_c) <= 0.0 else 0.0  # c: no limit
+        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: no limit
         effective_lower_c = lower_c
         effective_upper_c = upper_c
         tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
-        lowest_c = -1e12 if unlimited_c > 0.0 else effective_lower_c - tolerance_c
-        highest_c = 1e12 if unlimited_c > 0.0 else effective_upper_c + tolerance_c
+        lowest_c = -1e12 if unlimited_c else effective_lower_c - tolerance_c
+        highest_c = 1e12 if unlimited_c else effective_upper_c + tolerance_c
         # one value inside the limits
-        single_c = (
-            1.0
-            if (unlimited_c <= 0.0) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
-            else 0.0
-        )
+        single_c = (not unlimited_c) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
         machine_scale = 1.0  # a length of the machine
         return Constants(
@@ -170,7 +179,7 @@ class CAxis(OrientationKinematics, TwistChoice):
         return ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), _ = rotation
@@ -189,8 +198,8 @@ class CAxis(OrientationKinematics, TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
-        open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
-        near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
+        open_c = mid_c if single_c else ref_c  # C: where its turn is open
+        near_c = 360.0*(turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
         axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
@@ -284,12 +293,12 @@ class CAxis(OrientationKinematics, TwistChoice):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

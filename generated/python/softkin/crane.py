@@ -18,7 +18,7 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 11 additions, 7 multiplications, 1 divisions, 0 square roots, 4 sines
-    inverse: 26 additions, 23 multiplications, 7 divisions, 2 square roots, 6 sines
+    inverse: 26 additions, 22 multiplications, 7 divisions, 2 square roots, 6 sines
 
 On the vertical the azimuth is the reference's; at the origin the polar angle is too.
 
@@ -36,7 +36,20 @@ from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.crane import unrolled
 
 if TYPE_CHECKING:
@@ -49,22 +62,22 @@ class Constants(NamedTuple):
     offset_r: float
     offset_theta: float
     offset_phi: float
-    check_limits: float
+    check_limits: bool
     lower_r: float
     upper_r: float
-    unlimited_r: float
+    unlimited_r: bool
     lowest_r: float
     highest_r: float
     lower_theta: float
     upper_theta: float
-    unlimited_theta: float
+    unlimited_theta: bool
     lowest_theta: float
     highest_theta: float
-    single_theta: float
+    single_theta: bool
     mid_theta: float
     lower_phi: float
     upper_phi: float
-    unlimited_phi: float
+    unlimited_phi: bool
     lowest_phi: float
     highest_phi: float
     machine_scale: float
@@ -179,7 +192,7 @@ class Crane(OffsetKinematics):
 
     def _setup(
         self, offset_r: float, offset_theta: float, offset_phi: float, lower_r: float, upper_r: float,
-        lower_theta: float, upper_theta: float, lower_phi: float, upper_phi: float, check_limits: float,
+        lower_theta: float, upper_theta: float, lower_phi: float, upper_phi: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (offset_r >= -1e9 and offset_r <= 1e9):
@@ -212,37 +225,35 @@ class Crane(OffsetKinematics):
             )
         if not ((lower_r < upper_r) or (abs(lower_r) + abs(upper_r) <= 0.0)):
             raise self._refusal("lower_r below upper_r, or both 0", lower_r=lower_r, upper_r=upper_r)
-        unlimited_r = 0.0  # r: no limit
+        unlimited_r = False  # r: no limit
         effective_lower_r = lower_r if abs(lower_r) + abs(upper_r) > 0.0 else offset_r
         effective_upper_r = upper_r if abs(lower_r) + abs(upper_r) > 0.0 else 1e9 + offset_r
         tolerance_r = 1e-9 + 1e-9*abs(effective_lower_r) + 1e-9*abs(effective_upper_r)
-        lowest_r = -1e12 if unlimited_r > 0.0 else effective_lower_r - tolerance_r
-        highest_r = 1e12 if unlimited_r > 0.0 else effective_upper_r + tolerance_r
+        lowest_r = -1e12 if unlimited_r else effective_lower_r - tolerance_r
+        highest_r = 1e12 if unlimited_r else effective_upper_r + tolerance_r
         if not ((lower_theta < upper_theta) or (abs(lower_theta) + abs(upper_theta) <= 0.0)):
             raise self._refusal(
                 "lower_theta below upper_theta, or both 0", lower_theta=lower_theta, upper_theta=upper_theta,
             )
-        unlimited_theta = 1.0 if abs(lower_theta) + abs(upper_theta) <= 0.0 else 0.0  # theta: no limit
+        unlimited_theta = abs(lower_theta) + abs(upper_theta) <= 0.0  # theta: no limit
         effective_lower_theta = lower_theta
         effective_upper_theta = upper_theta
         tolerance_theta = 1e-9 + 1e-9*abs(effective_lower_theta) + 1e-9*abs(effective_upper_theta)
-        lowest_theta = -1e12 if unlimited_theta > 0.0 else effective_lower_theta - tolerance_theta
-        highest_theta = 1e12 if unlimited_theta > 0.0 else effective_upper_theta + tolerance_theta
+        lowest_theta = -1e12 if unlimited_theta else effective_lower_theta - tolerance_theta
+        highest_theta = 1e12 if unlimited_theta else effective_upper_theta + tolerance_theta
         # one value inside the limits
         single_theta = (
-            1.0
-            if (unlimited_theta <= 0.0) and (effective_upper_theta - effective_lower_theta <= 350.0 + tolerance_theta)
-            else 0.0
+            (not unlimited_theta) and (effective_upper_theta - effective_lower_theta <= 350.0 + tolerance_theta)
         )
         mid_theta = 0.5*effective_lower_theta + 0.5*effective_upper_theta
         if not ((lower_phi < upper_phi) or (abs(lower_phi) + abs(upper_phi) <= 0.0)):
             raise self._refusal("lower_phi below upper_phi, or both 0", lower_phi=lower_phi, upper_phi=upper_phi)
-        unlimited_phi = 0.0  # phi: no limit
+        unlimited_phi = False  # phi: no limit
         effective_lower_phi = lower_phi if abs(lower_phi) + abs(upper_phi) > 0.0 else offset_phi
         effective_upper_phi = upper_phi if abs(lower_phi) + abs(upper_phi) > 0.0 else 180.0 + offset_phi
         tolerance_phi = 1e-9 + 1e-9*abs(effective_lower_phi) + 1e-9*abs(effective_upper_phi)
-        lowest_phi = -1e12 if unlimited_phi > 0.0 else effective_lower_phi - tolerance_phi
-        highest_phi = 1e12 if unlimited_phi > 0.0 else effective_upper_phi + tolerance_phi
+        lowest_phi = -1e12 if unlimited_phi else effective_lower_phi - tolerance_phi
+        highest_phi = 1e12 if unlimited_phi else effective_upper_phi + tolerance_phi
         machine_scale = 1.0  # a length of the machine
         return Constants(
             offset_r=offset_r, offset_theta=offset_theta, offset_phi=offset_phi, check_limits=check_limits,
@@ -300,7 +311,7 @@ class Crane(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -330,12 +341,8 @@ class Crane(OffsetKinematics):
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        open_theta = mid_theta if single_theta > 0.0 else ref_theta  # Theta: where its turn is open
-        near_theta = (
-            (360.0*turn_theta - 360.0 if turn_theta > 0.0 else 360.0*turn_theta)
-            if abs(turn_theta) > 0.0
-            else open_theta
-        )
+        open_theta = mid_theta if single_theta else ref_theta  # Theta: where its turn is open
+        near_theta = 360.0*(turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
@@ -458,7 +465,7 @@ class Crane(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -493,12 +500,8 @@ class Crane(OffsetKinematics):
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        open_theta = mid_theta if single_theta > 0.0 else ref_theta  # Theta: where its turn is open
-        near_theta = (
-            (360.0*turn_theta - 360.0 if turn_theta > 0.0 else 360.0*turn_theta)
-            if abs(turn_theta) > 0.0
-            else open_theta
-        )
+        open_theta = mid_theta if single_theta else ref_theta  # Theta: where its turn is open
+        near_theta = 360.0*(turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
@@ -535,12 +538,12 @@ class Crane(OffsetKinematics):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

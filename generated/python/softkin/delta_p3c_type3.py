@@ -25,8 +25,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 82 additions, 122 multiplications, 10 divisions, 1 square roots, 6 sines
-    inverse: 120 additions, 138 multiplications, 28 divisions, 6 square roots, 3 sines
-    inverse, all 8 branches open: 953 additions, 1104 multiplications, 224 divisions, 48 square roots, 24 sines
+    inverse: 120 additions, 135 multiplications, 28 divisions, 6 square roots, 3 sines
+    inverse, all 8 branches open: 953 additions, 1080 multiplications, 224 divisions, 48 square roots, 24 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -42,7 +42,20 @@ from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.delta_p3c_type3 import unrolled
 
 if TYPE_CHECKING:
@@ -70,29 +83,29 @@ class Constants(NamedTuple):
     offset_a1: float
     offset_a2: float
     offset_a3: float
-    tcp_above: float
+    tcp_above: bool
     min_type2_margin: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
-    single_a1: float
+    single_a1: bool
     mid_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
-    single_a2: float
+    single_a2: bool
     mid_a2: float
     lower_a3: float
     upper_a3: float
-    unlimited_a3: float
+    unlimited_a3: bool
     lowest_a3: float
     highest_a3: float
-    single_a3: float
+    single_a3: bool
     mid_a3: float
     machine_scale: float
     sin_azimuth_1: float
@@ -314,8 +327,8 @@ class DeltaP3CType3(OffsetKinematics):
         base_radius_3: float, inner_arm_1: float, inner_arm_2: float, inner_arm_3: float, outer_arm_1: float,
         outer_arm_2: float, outer_arm_3: float, tcp_radius_1: float, tcp_radius_2: float, tcp_radius_3: float,
         offset_a1: float, offset_a2: float, offset_a3: float, lower_a1: float, upper_a1: float, lower_a2: float,
-        upper_a2: float, lower_a3: float, upper_a3: float, tcp_above: float, min_type2_margin: float,
-        check_limits: float,
+        upper_a2: float, lower_a3: float, upper_a3: float, tcp_above: bool, min_type2_margin: float,
+        check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (azimuth_1 >= -360.0 and azimuth_1 <= 360.0):
@@ -421,48 +434,36 @@ class DeltaP3CType3(OffsetKinematics):
             raise self._refusal("arms long enough to reach the plate")
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         # one value inside the limits
-        single_a1 = (
-            1.0
-            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-            else 0.0
-        )
+        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         # one value inside the limits
-        single_a2 = (
-            1.0
-            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-            else 0.0
-        )
+        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = 1.0 if abs(lower_a3) + abs(upper_a3) <= 0.0 else 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
+        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
+        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         # one value inside the limits
-        single_a3 = (
-            1.0
-            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-            else 0.0
-        )
+        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         # a length of the machine
         machine_scale = (
@@ -477,9 +478,9 @@ class DeltaP3CType3(OffsetKinematics):
         cos_azimuth_3 = cos(DEGREE*azimuth_3)
         # assembly mode of this machine
         assembly_sign = (
-            2.0*tcp_above - 1.0
+            (1.0 if tcp_above else -1.0)
             if cos_azimuth_1*sin_azimuth_2 + cos_azimuth_2*sin_azimuth_3 + cos_azimuth_3*sin_azimuth_1 - cos_azimuth_1*sin_azimuth_3 - cos_azimuth_2*sin_azimuth_1 - cos_azimuth_3*sin_azimuth_2 > 0.0
-            else 1.0 - 2.0*tcp_above
+            else (-1.0 if tcp_above else 1.0)
         )
         return Constants(
             azimuth_1=azimuth_1, azimuth_2=azimuth_2, azimuth_3=azimuth_3, base_radius_1=base_radius_1,
@@ -715,7 +716,7 @@ class DeltaP3CType3(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -907,18 +908,18 @@ class DeltaP3CType3(OffsetKinematics):
             return Diagnosis(
                 Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
             )
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
@@ -1274,7 +1275,7 @@ class DeltaP3CType3(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -1471,18 +1472,18 @@ class DeltaP3CType3(OffsetKinematics):
             return Diagnosis(
                 Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
             )
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
@@ -1606,12 +1607,12 @@ class DeltaP3CType3(OffsetKinematics):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

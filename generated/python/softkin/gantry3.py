@@ -30,7 +30,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._types import Axis, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.gantry3 import unrolled
 
 if TYPE_CHECKING:
@@ -43,20 +55,20 @@ class Constants(NamedTuple):
     offset_x: float
     offset_y: float
     offset_z: float
-    check_limits: float
+    check_limits: bool
     lower_x: float
     upper_x: float
-    unlimited_x: float
+    unlimited_x: bool
     lowest_x: float
     highest_x: float
     lower_y: float
     upper_y: float
-    unlimited_y: float
+    unlimited_y: bool
     lowest_y: float
     highest_y: float
     lower_z: float
     upper_z: float
-    unlimited_z: float
+    unlimited_z: bool
     lowest_z: float
     highest_z: float
     machine_scale: float
@@ -160,7 +172,7 @@ class Gantry3(OffsetKinematics):
 
     def _setup(
         self, offset_x: float, offset_y: float, offset_z: float, lower_x: float, upper_x: float, lower_y: float,
-        upper_y: float, lower_z: float, upper_z: float, check_limits: float,
+        upper_y: float, lower_z: float, upper_z: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (offset_x >= -1e9 and offset_x <= 1e9):
@@ -183,28 +195,28 @@ class Gantry3(OffsetKinematics):
             raise self._refusal("upper_z: Z: upper limit of the axis, both 0: no limit", upper_z=upper_z)
         if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
             raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = 1.0 if abs(lower_x) + abs(upper_x) <= 0.0 else 0.0  # x: no limit
+        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: no limit
         effective_lower_x = lower_x
         effective_upper_x = upper_x
         tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
-        lowest_x = -1e12 if unlimited_x > 0.0 else effective_lower_x - tolerance_x
-        highest_x = 1e12 if unlimited_x > 0.0 else effective_upper_x + tolerance_x
+        lowest_x = -1e12 if unlimited_x else effective_lower_x - tolerance_x
+        highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
         if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
             raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = 1.0 if abs(lower_y) + abs(upper_y) <= 0.0 else 0.0  # y: no limit
+        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: no limit
         effective_lower_y = lower_y
         effective_upper_y = upper_y
         tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
-        lowest_y = -1e12 if unlimited_y > 0.0 else effective_lower_y - tolerance_y
-        highest_y = 1e12 if unlimited_y > 0.0 else effective_upper_y + tolerance_y
+        lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
+        highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
         if not ((lower_z < upper_z) or (abs(lower_z) + abs(upper_z) <= 0.0)):
             raise self._refusal("lower_z below upper_z, or both 0", lower_z=lower_z, upper_z=upper_z)
-        unlimited_z = 1.0 if abs(lower_z) + abs(upper_z) <= 0.0 else 0.0  # z: no limit
+        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: no limit
         effective_lower_z = lower_z
         effective_upper_z = upper_z
         tolerance_z = 1e-9 + 1e-9*abs(effective_lower_z) + 1e-9*abs(effective_upper_z)
-        lowest_z = -1e12 if unlimited_z > 0.0 else effective_lower_z - tolerance_z
-        highest_z = 1e12 if unlimited_z > 0.0 else effective_upper_z + tolerance_z
+        lowest_z = -1e12 if unlimited_z else effective_lower_z - tolerance_z
+        highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
         machine_scale = 1.0  # a length of the machine
         return Constants(
             offset_x=offset_x, offset_y=offset_y, offset_z=offset_z, check_limits=check_limits,
@@ -238,7 +250,7 @@ class Gantry3(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -308,7 +320,7 @@ class Gantry3(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -344,12 +356,12 @@ class Gantry3(OffsetKinematics):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

@@ -17,7 +17,7 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 7 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 46 additions, 52 multiplications, 12 divisions, 3 square roots, 1 sines
+    inverse: 46 additions, 51 multiplications, 12 divisions, 3 square roots, 1 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -34,7 +34,20 @@ from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.gantrycutter2 import unrolled
 
 if TYPE_CHECKING:
@@ -48,23 +61,23 @@ class Constants(NamedTuple):
     offset_x: float
     offset_y: float
     offset_r: float
-    check_limits: float
+    check_limits: bool
     lower_x: float
     upper_x: float
-    unlimited_x: float
+    unlimited_x: bool
     lowest_x: float
     highest_x: float
     lower_y: float
     upper_y: float
-    unlimited_y: float
+    unlimited_y: bool
     lowest_y: float
     highest_y: float
     lower_r: float
     upper_r: float
-    unlimited_r: float
+    unlimited_r: bool
     lowest_r: float
     highest_r: float
-    single_r: float
+    single_r: bool
     mid_r: float
     machine_scale: float
 
@@ -175,11 +188,11 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
 
     def _setup(
-        self, direction_r: float, offset_x: float, offset_y: float, offset_r: float, lower_x: float,
-        upper_x: float, lower_y: float, upper_y: float, lower_r: float, upper_r: float, check_limits: float,
+        self, direction_r: int, offset_x: float, offset_y: float, offset_r: float, lower_x: float, upper_x: float,
+        lower_y: float, upper_y: float, lower_r: float, upper_r: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
-        if not (abs(direction_r) >= 1.0 and -1.0 <= direction_r <= 1.0):
+        if not ((direction_r == -1) or (direction_r == 1)):
             raise self._refusal(
                 "direction_r: Direction of the knife axis: 1 counter-clockwise, -1 clockwise",
                 direction_r=direction_r,
@@ -204,34 +217,30 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
             raise self._refusal("upper_r: R: upper limit of the axis, both 0: no limit", upper_r=upper_r)
         if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
             raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = 1.0 if abs(lower_x) + abs(upper_x) <= 0.0 else 0.0  # x: no limit
+        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: no limit
         effective_lower_x = lower_x
         effective_upper_x = upper_x
         tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
-        lowest_x = -1e12 if unlimited_x > 0.0 else effective_lower_x - tolerance_x
-        highest_x = 1e12 if unlimited_x > 0.0 else effective_upper_x + tolerance_x
+        lowest_x = -1e12 if unlimited_x else effective_lower_x - tolerance_x
+        highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
         if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
             raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = 1.0 if abs(lower_y) + abs(upper_y) <= 0.0 else 0.0  # y: no limit
+        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: no limit
         effective_lower_y = lower_y
         effective_upper_y = upper_y
         tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
-        lowest_y = -1e12 if unlimited_y > 0.0 else effective_lower_y - tolerance_y
-        highest_y = 1e12 if unlimited_y > 0.0 else effective_upper_y + tolerance_y
+        lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
+        highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
         if not ((lower_r < upper_r) or (abs(lower_r) + abs(upper_r) <= 0.0)):
             raise self._refusal("lower_r below upper_r, or both 0", lower_r=lower_r, upper_r=upper_r)
-        unlimited_r = 1.0 if abs(lower_r) + abs(upper_r) <= 0.0 else 0.0  # r: no limit
+        unlimited_r = abs(lower_r) + abs(upper_r) <= 0.0  # r: no limit
         effective_lower_r = lower_r
         effective_upper_r = upper_r
         tolerance_r = 1e-9 + 1e-9*abs(effective_lower_r) + 1e-9*abs(effective_upper_r)
-        lowest_r = -1e12 if unlimited_r > 0.0 else effective_lower_r - tolerance_r
-        highest_r = 1e12 if unlimited_r > 0.0 else effective_upper_r + tolerance_r
+        lowest_r = -1e12 if unlimited_r else effective_lower_r - tolerance_r
+        highest_r = 1e12 if unlimited_r else effective_upper_r + tolerance_r
         # one value inside the limits
-        single_r = (
-            1.0
-            if (unlimited_r <= 0.0) and (effective_upper_r - effective_lower_r <= 350.0 + tolerance_r)
-            else 0.0
-        )
+        single_r = (not unlimited_r) and (effective_upper_r - effective_lower_r <= 350.0 + tolerance_r)
         mid_r = 0.5*effective_lower_r + 0.5*effective_upper_r
         machine_scale = 1.0  # a length of the machine
         return Constants(
@@ -280,7 +289,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         return ((cos_r, -direction_r*sin_r, 0.0), (direction_r*sin_r, cos_r, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -311,8 +320,8 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         axis_x = offset_x + x
         axis_y = offset_y + y
         direction_y_r = direction_r*heading_across
-        open_r = mid_r if single_r > 0.0 else ref_r  # R: where its turn is open
-        near_r = (360.0*turn_r - 360.0 if turn_r > 0.0 else 360.0*turn_r) if abs(turn_r) > 0.0 else open_r
+        open_r = mid_r if single_r else ref_r  # R: where its turn is open
+        near_r = 360.0*(turn_r - 1 if turn_r > 0 else turn_r) if turn_r != 0 else open_r
         axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0)/DEGREE  # R: its turn
         if not -180.000000001 <= axis_r - near_r < 179.999999999:
             axis_r = nearest_period(axis_r, near_r)
@@ -409,7 +418,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -455,12 +464,12 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

@@ -50,7 +50,19 @@ from typing import TYPE_CHECKING, NamedTuple
 from softkin._core import Image, Pose
 from softkin._scalar import DEGREE, arctan2, cos, root, sin, solve, sqrt
 from softkin._start import IterativeForward
-from softkin._types import Axis, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.hexapod import unrolled
 
 if TYPE_CHECKING:
@@ -111,35 +123,35 @@ class Constants(NamedTuple):
     offset_l5: float
     offset_l6: float
     min_type2_margin: float
-    check_limits: float
+    check_limits: bool
     lower_l1: float
     upper_l1: float
-    unlimited_l1: float
+    unlimited_l1: bool
     lowest_l1: float
     highest_l1: float
     lower_l2: float
     upper_l2: float
-    unlimited_l2: float
+    unlimited_l2: bool
     lowest_l2: float
     highest_l2: float
     lower_l3: float
     upper_l3: float
-    unlimited_l3: float
+    unlimited_l3: bool
     lowest_l3: float
     highest_l3: float
     lower_l4: float
     upper_l4: float
-    unlimited_l4: float
+    unlimited_l4: bool
     lowest_l4: float
     highest_l4: float
     lower_l5: float
     upper_l5: float
-    unlimited_l5: float
+    unlimited_l5: bool
     lowest_l5: float
     highest_l5: float
     lower_l6: float
     upper_l6: float
-    unlimited_l6: float
+    unlimited_l6: bool
     lowest_l6: float
     highest_l6: float
     home_r11: float
@@ -650,7 +662,7 @@ class Hexapod(IterativeForward):
         offset_l3: float, offset_l4: float, offset_l5: float, offset_l6: float, lower_l1: float, upper_l1: float,
         lower_l2: float, upper_l2: float, lower_l3: float, upper_l3: float, lower_l4: float, upper_l4: float,
         lower_l5: float, upper_l5: float, lower_l6: float, upper_l6: float, min_type2_margin: float,
-        check_limits: float,
+        check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (base_1_x >= -1e9 and base_1_x <= 1e9):
@@ -870,52 +882,52 @@ class Hexapod(IterativeForward):
             )
         if not ((lower_l1 < upper_l1) or (abs(lower_l1) + abs(upper_l1) <= 0.0)):
             raise self._refusal("lower_l1 below upper_l1, or both 0", lower_l1=lower_l1, upper_l1=upper_l1)
-        unlimited_l1 = 0.0  # l1: no limit
+        unlimited_l1 = False  # l1: no limit
         effective_lower_l1 = lower_l1 if abs(lower_l1) + abs(upper_l1) > 0.0 else offset_l1
         effective_upper_l1 = upper_l1 if abs(lower_l1) + abs(upper_l1) > 0.0 else 1e9 + offset_l1
         tolerance_l1 = 1e-9 + 1e-9*abs(effective_lower_l1) + 1e-9*abs(effective_upper_l1)
-        lowest_l1 = -1e12 if unlimited_l1 > 0.0 else effective_lower_l1 - tolerance_l1
-        highest_l1 = 1e12 if unlimited_l1 > 0.0 else effective_upper_l1 + tolerance_l1
+        lowest_l1 = -1e12 if unlimited_l1 else effective_lower_l1 - tolerance_l1
+        highest_l1 = 1e12 if unlimited_l1 else effective_upper_l1 + tolerance_l1
         if not ((lower_l2 < upper_l2) or (abs(lower_l2) + abs(upper_l2) <= 0.0)):
             raise self._refusal("lower_l2 below upper_l2, or both 0", lower_l2=lower_l2, upper_l2=upper_l2)
-        unlimited_l2 = 0.0  # l2: no limit
+        unlimited_l2 = False  # l2: no limit
         effective_lower_l2 = lower_l2 if abs(lower_l2) + abs(upper_l2) > 0.0 else offset_l2
         effective_upper_l2 = upper_l2 if abs(lower_l2) + abs(upper_l2) > 0.0 else 1e9 + offset_l2
         tolerance_l2 = 1e-9 + 1e-9*abs(effective_lower_l2) + 1e-9*abs(effective_upper_l2)
-        lowest_l2 = -1e12 if unlimited_l2 > 0.0 else effective_lower_l2 - tolerance_l2
-        highest_l2 = 1e12 if unlimited_l2 > 0.0 else effective_upper_l2 + tolerance_l2
+        lowest_l2 = -1e12 if unlimited_l2 else effective_lower_l2 - tolerance_l2
+        highest_l2 = 1e12 if unlimited_l2 else effective_upper_l2 + tolerance_l2
         if not ((lower_l3 < upper_l3) or (abs(lower_l3) + abs(upper_l3) <= 0.0)):
             raise self._refusal("lower_l3 below upper_l3, or both 0", lower_l3=lower_l3, upper_l3=upper_l3)
-        unlimited_l3 = 0.0  # l3: no limit
+        unlimited_l3 = False  # l3: no limit
         effective_lower_l3 = lower_l3 if abs(lower_l3) + abs(upper_l3) > 0.0 else offset_l3
         effective_upper_l3 = upper_l3 if abs(lower_l3) + abs(upper_l3) > 0.0 else 1e9 + offset_l3
         tolerance_l3 = 1e-9 + 1e-9*abs(effective_lower_l3) + 1e-9*abs(effective_upper_l3)
-        lowest_l3 = -1e12 if unlimited_l3 > 0.0 else effective_lower_l3 - tolerance_l3
-        highest_l3 = 1e12 if unlimited_l3 > 0.0 else effective_upper_l3 + tolerance_l3
+        lowest_l3 = -1e12 if unlimited_l3 else effective_lower_l3 - tolerance_l3
+        highest_l3 = 1e12 if unlimited_l3 else effective_upper_l3 + tolerance_l3
         if not ((lower_l4 < upper_l4) or (abs(lower_l4) + abs(upper_l4) <= 0.0)):
             raise self._refusal("lower_l4 below upper_l4, or both 0", lower_l4=lower_l4, upper_l4=upper_l4)
-        unlimited_l4 = 0.0  # l4: no limit
+        unlimited_l4 = False  # l4: no limit
         effective_lower_l4 = lower_l4 if abs(lower_l4) + abs(upper_l4) > 0.0 else offset_l4
         effective_upper_l4 = upper_l4 if abs(lower_l4) + abs(upper_l4) > 0.0 else 1e9 + offset_l4
         tolerance_l4 = 1e-9 + 1e-9*abs(effective_lower_l4) + 1e-9*abs(effective_upper_l4)
-        lowest_l4 = -1e12 if unlimited_l4 > 0.0 else effective_lower_l4 - tolerance_l4
-        highest_l4 = 1e12 if unlimited_l4 > 0.0 else effective_upper_l4 + tolerance_l4
+        lowest_l4 = -1e12 if unlimited_l4 else effective_lower_l4 - tolerance_l4
+        highest_l4 = 1e12 if unlimited_l4 else effective_upper_l4 + tolerance_l4
         if not ((lower_l5 < upper_l5) or (abs(lower_l5) + abs(upper_l5) <= 0.0)):
             raise self._refusal("lower_l5 below upper_l5, or both 0", lower_l5=lower_l5, upper_l5=upper_l5)
-        unlimited_l5 = 0.0  # l5: no limit
+        unlimited_l5 = False  # l5: no limit
         effective_lower_l5 = lower_l5 if abs(lower_l5) + abs(upper_l5) > 0.0 else offset_l5
         effective_upper_l5 = upper_l5 if abs(lower_l5) + abs(upper_l5) > 0.0 else 1e9 + offset_l5
         tolerance_l5 = 1e-9 + 1e-9*abs(effective_lower_l5) + 1e-9*abs(effective_upper_l5)
-        lowest_l5 = -1e12 if unlimited_l5 > 0.0 else effective_lower_l5 - tolerance_l5
-        highest_l5 = 1e12 if unlimited_l5 > 0.0 else effective_upper_l5 + tolerance_l5
+        lowest_l5 = -1e12 if unlimited_l5 else effective_lower_l5 - tolerance_l5
+        highest_l5 = 1e12 if unlimited_l5 else effective_upper_l5 + tolerance_l5
         if not ((lower_l6 < upper_l6) or (abs(lower_l6) + abs(upper_l6) <= 0.0)):
             raise self._refusal("lower_l6 below upper_l6, or both 0", lower_l6=lower_l6, upper_l6=upper_l6)
-        unlimited_l6 = 0.0  # l6: no limit
+        unlimited_l6 = False  # l6: no limit
         effective_lower_l6 = lower_l6 if abs(lower_l6) + abs(upper_l6) > 0.0 else offset_l6
         effective_upper_l6 = upper_l6 if abs(lower_l6) + abs(upper_l6) > 0.0 else 1e9 + offset_l6
         tolerance_l6 = 1e-9 + 1e-9*abs(effective_lower_l6) + 1e-9*abs(effective_upper_l6)
-        lowest_l6 = -1e12 if unlimited_l6 > 0.0 else effective_lower_l6 - tolerance_l6
-        highest_l6 = 1e12 if unlimited_l6 > 0.0 else effective_upper_l6 + tolerance_l6
+        lowest_l6 = -1e12 if unlimited_l6 else effective_lower_l6 - tolerance_l6
+        highest_l6 = 1e12 if unlimited_l6 else effective_upper_l6 + tolerance_l6
         cos_home_roll = cos(DEGREE*home_roll)
         sin_home_roll = sin(DEGREE*home_roll)
         cos_home_pitch = cos(DEGREE*home_pitch)
@@ -1243,7 +1255,7 @@ class Hexapod(IterativeForward):
         start_arm_6_y = platform_6_x*start_r21 + platform_6_y*start_r22 + platform_6_z*start_r23
         start_arm_6_z = platform_6_x*start_r31 + platform_6_y*start_r32 + platform_6_z*start_r33
         # Newton's method: every pass improves the pose until the rods fit
-        x, y, z, roll, pitch, yaw, fitted = start_x, start_y, start_z, 0.0, 0.0, 0.0, 0.0
+        x, y, z, roll, pitch, yaw, fitted = start_x, start_y, start_z, 0.0, 0.0, 0.0, False
         for _ in range(20):
             cos_pitch = cos(pitch)
             cos_yaw = cos(yaw)
@@ -1310,11 +1322,8 @@ class Hexapod(IterativeForward):
             error_6 = length_6 - l6  # by what leg 6 would be too long
             # whether the rods fit
             fit = (
-                1.0
-                if (
-                    abs(error_1) <= within
-                ) and (abs(error_2) <= within) and (abs(error_3) <= within) and (abs(error_4) <= within) and (abs(error_5) <= within) and (abs(error_6) <= within)
-                else 0.0
+                (abs(error_1) <= within) and (abs(error_2) <= within) and (abs(error_3) <= within)
+                and (abs(error_4) <= within) and (abs(error_5) <= within) and (abs(error_6) <= within)
             )
             # leg 1: its direction, and the moment of that about the platform's origin
             divisor_1 = length_1 if length_1 > 1e-9*machine_scale else 1.0
@@ -1390,7 +1399,7 @@ class Hexapod(IterativeForward):
                 + z_rate*z_rate/(machine_scale*machine_scale)
             )
             stretch = 2.0*size if size > 0.5 else 1.0
-            if fit > 0.5 and fitted > 0.5:
+            if (fit) and (fitted):
                 break
             x = x + x_rate/stretch
             y = y + y_rate/stretch
@@ -1502,7 +1511,7 @@ class Hexapod(IterativeForward):
         return ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -2068,12 +2077,12 @@ class Hexapod(IterativeForward):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

@@ -20,9 +20,9 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 54 additions, 78 multiplications, 17 divisions, 2 square roots, 4 sines
-    inverse: 78 additions, 97 multiplications, 31 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 309 additions, 388 multiplications, 124 divisions, 16 square roots, 8 sines
+    forward: 38 additions, 58 multiplications, 15 divisions, 2 square roots, 4 sines
+    inverse: 62 additions, 75 multiplications, 29 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 245 additions, 300 multiplications, 116 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -38,7 +38,20 @@ from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.mc_kin_type_12_xy import unrolled
 
 if TYPE_CHECKING:
@@ -53,25 +66,25 @@ class Constants(NamedTuple):
     link_length_3: float
     link_length_4: float
     link_length_5: float
-    swap_xy: float
+    swap_xy: bool
     offset_a1: float
     offset_a2: float
-    e_right: float
+    e_right: bool
     min_type2_margin: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
-    single_a1: float
+    single_a1: bool
     mid_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
-    single_a2: float
+    single_a2: bool
     mid_a2: float
     machine_scale: float
     radius_2: float
@@ -212,9 +225,8 @@ class KinType12XY(OffsetKinematics):
 
     def _setup(
         self, link_length_1: float, link_length_2: float, link_length_3: float, link_length_4: float,
-        link_length_5: float, swap_xy: float, offset_a1: float, offset_a2: float, lower_a1: float,
-        upper_a1: float, lower_a2: float, upper_a2: float, e_right: float, min_type2_margin: float,
-        check_limits: float,
+        link_length_5: float, swap_xy: bool, offset_a1: float, offset_a2: float, lower_a1: float, upper_a1: float,
+        lower_a2: float, upper_a2: float, e_right: bool, min_type2_margin: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (link_length_1 <= 1e9 and link_length_1 > 0.0):
@@ -266,39 +278,31 @@ class KinType12XY(OffsetKinematics):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         # one value inside the limits
-        single_a1 = (
-            1.0
-            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-            else 0.0
-        )
+        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         # one value inside the limits
-        single_a2 = (
-            1.0
-            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-            else 0.0
-        )
+        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         # a length of the machine
         machine_scale = link_length_1 + link_length_2 + link_length_3 + link_length_4 + link_length_5
         radius_2 = link_length_2*link_length_4/link_length_3
         # assembly mode of this machine
-        assembly_sign = 1.0 - 2.0*e_right if 1.0 - 2.0*swap_xy > 0.0 else 2.0*e_right - 1.0
+        assembly_sign = (-1.0 if e_right else 1.0) if not swap_xy else (1.0 if e_right else -1.0)
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, link_length_3=link_length_3,
             link_length_4=link_length_4, link_length_5=link_length_5, swap_xy=swap_xy, offset_a1=offset_a1,
@@ -332,7 +336,12 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear
@@ -340,16 +349,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (
-            (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
-            /link_length_3
-        )
+        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-        centre_2_y = (
-            (link_length_2*pivot_rear_y*swap_xy - link_length_2*pivot_rear_y - link_length_2*pivot_rear_x*swap_xy)
-            /link_length_3
-        )
+        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -372,19 +374,19 @@ class KinType12XY(OffsetKinematics):
         x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
-        span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
-        span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
+        # rod upper
+        # rod rear
+        if swap_xy:
+            span_upper_x = y
+            span_upper_y = x
+            span_rear_x = -link_length_3*y/link_length_2
+            span_rear_y = -link_length_3*x/link_length_2
+        else:
+            span_upper_x = x
+            span_upper_y = y
+            span_rear_x = -link_length_3*x/link_length_2
+            span_rear_y = -link_length_3*y/link_length_2
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        # rod rear
-        span_rear_x = (
-            link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
-            - link_length_3*swap_xy*y/link_length_2
-        )
-        # rod rear
-        span_rear_y = (
-            link_length_3*swap_xy*y/link_length_2 - link_length_3*y/link_length_2
-            - link_length_3*swap_xy*x/link_length_2
-        )
         branch_w = (
             (
                 link_length_1*link_length_2*cos_a1*cos_a2 + link_length_1*link_length_3*cos_a1*cos_a2
@@ -415,7 +417,12 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear
@@ -423,16 +430,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (
-            (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
-            /link_length_3
-        )
+        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-        centre_2_y = (
-            (link_length_2*pivot_rear_y*swap_xy - link_length_2*pivot_rear_y - link_length_2*pivot_rear_x*swap_xy)
-            /link_length_3
-        )
+        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -451,7 +451,7 @@ class KinType12XY(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -484,8 +484,13 @@ class KinType12XY(OffsetKinematics):
         if not (abs(z) <= 1e-6*machine_scale):
             missing = abs(z) - 1e-6*machine_scale
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
-        span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
+        # rod upper
+        if swap_xy:
+            span_upper_x = y
+            span_upper_y = x
+        else:
+            span_upper_x = x
+            span_upper_y = y
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
@@ -512,20 +517,17 @@ class KinType12XY(OffsetKinematics):
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
-        span_rear_x = (
-            link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
-            - link_length_3*swap_xy*y/link_length_2
-        )
+        if swap_xy:
+            span_rear_x = -link_length_3*y/link_length_2
+            span_rear_y = -link_length_3*x/link_length_2
+        else:
+            span_rear_x = -link_length_3*x/link_length_2
+            span_rear_y = -link_length_3*y/link_length_2
         along_a2 = (
             (link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1 - link_length_1*link_length_3*sin_a1)
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
-        # rod rear
-        span_rear_y = (
-            link_length_3*swap_xy*y/link_length_2 - link_length_3*y/link_length_2
-            - link_length_3*swap_xy*x/link_length_2
-        )
         across_a2 = (
             (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
             /link_length_2
@@ -551,9 +553,13 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         rod_1_x = x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
         rod_1_y = y - centre_1_y
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
@@ -565,15 +571,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (
-            (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
-            /link_length_3
-        )
+        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
         rod_2_x = x - centre_2_x
-        centre_2_y = (
-            (link_length_2*pivot_rear_y*swap_xy - link_length_2*pivot_rear_y - link_length_2*pivot_rear_x*swap_xy)
-            /link_length_3
-        )
+        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
         rod_2_y = y - centre_2_y
         type2_arms_aligned = (
             assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
@@ -585,13 +585,13 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(
                 Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
             )
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
@@ -651,7 +651,12 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear
@@ -659,16 +664,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (
-            (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
-            /link_length_3
-        )
+        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-        centre_2_y = (
-            (link_length_2*pivot_rear_y*swap_xy - link_length_2*pivot_rear_y - link_length_2*pivot_rear_x*swap_xy)
-            /link_length_3
-        )
+        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -691,19 +689,19 @@ class KinType12XY(OffsetKinematics):
         x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
-        span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
-        span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
+        # rod upper
+        # rod rear
+        if swap_xy:
+            span_upper_x = y
+            span_upper_y = x
+            span_rear_x = -link_length_3*y/link_length_2
+            span_rear_y = -link_length_3*x/link_length_2
+        else:
+            span_upper_x = x
+            span_upper_y = y
+            span_rear_x = -link_length_3*x/link_length_2
+            span_rear_y = -link_length_3*y/link_length_2
         margin_stretched_1 = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        # rod rear
-        span_rear_x = (
-            link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
-            - link_length_3*swap_xy*y/link_length_2
-        )
-        # rod rear
-        span_rear_y = (
-            link_length_3*swap_xy*y/link_length_2 - link_length_3*y/link_length_2
-            - link_length_3*swap_xy*x/link_length_2
-        )
         margin_stretched_2 = (
             (
                 link_length_1*link_length_2*cos_a1*cos_a2 + link_length_1*link_length_3*cos_a1*cos_a2
@@ -743,7 +741,12 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear
@@ -751,16 +754,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (
-            (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
-            /link_length_3
-        )
+        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-        centre_2_y = (
-            (link_length_2*pivot_rear_y*swap_xy - link_length_2*pivot_rear_y - link_length_2*pivot_rear_x*swap_xy)
-            /link_length_3
-        )
+        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -783,64 +779,98 @@ class KinType12XY(OffsetKinematics):
         x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
-        slope_1_by_x = (
-            2.0*swap_xy*(y + link_length_1*cos_a1 + swap_xy*(x - y))
-            + (2.0 - 2.0*swap_xy)*(x + link_length_1*sin_a1 + (y - x)*swap_xy)
-        )
-        slope_1_by_y = (
-            2.0*(x + link_length_1*sin_a1 + (y - x)*swap_xy)*swap_xy
-            + (2.0 - 2.0*swap_xy)*(y + link_length_1*cos_a1 + swap_xy*(x - y))
-        )
-        slope_2_by_x = (
-            -2.0*(
-                -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
-                - link_length_3*(y + swap_xy*(x - y))/link_length_2
-            )*link_length_3*swap_xy/link_length_2
-            - 2.0*(1.0 - swap_xy)*link_length_3*(
-                link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                - link_length_3*(x + (y - x)*swap_xy)/link_length_2
-            )/link_length_2
-        )
-        slope_2_by_y = (
-            -2.0*link_length_3*swap_xy*(
-                link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                - link_length_3*(x + (y - x)*swap_xy)/link_length_2
-            )/link_length_2
-            - 2.0*(
-                -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
-                - link_length_3*(y + swap_xy*(x - y))/link_length_2
-            )*(1.0 - swap_xy)*link_length_3/link_length_2
-        )
+        if swap_xy:
+            slope_1_by_x = 2.0*x + 2.0*link_length_1*cos_a1
+            slope_1_by_y = 2.0*y + 2.0*link_length_1*sin_a1
+            slope_2_by_x = (
+                -2.0
+                *(
+                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
+                    - link_length_3*x/link_length_2
+                )
+                *link_length_3/link_length_2
+            )
+            slope_2_by_y = (
+                -2.0*link_length_3
+                *(
+                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
+                    - link_length_3*y/link_length_2
+                )
+                /link_length_2
+            )
+        else:
+            slope_1_by_x = 2.0*x + 2.0*link_length_1*sin_a1
+            slope_1_by_y = 2.0*y + 2.0*link_length_1*cos_a1
+            slope_2_by_x = (
+                -2.0*link_length_3
+                *(
+                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
+                    - link_length_3*x/link_length_2
+                )
+                /link_length_2
+            )
+            slope_2_by_y = (
+                -2.0
+                *(
+                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
+                    - link_length_3*y/link_length_2
+                )
+                *link_length_3/link_length_2
+            )
         # of the closure by the position: zero in a type 2 singularity
         determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x
         # nothing controls the plate
         if not (abs(determinant) > 1e-11*machine_scale*machine_scale):
             return Status.IMPOSSIBLE
-        slope_1_by_a1 = (
-            2.0*link_length_1*(x + link_length_1*sin_a1 + (y - x)*swap_xy)*cos_a1
-            - 2.0*link_length_1*(y + link_length_1*cos_a1 + swap_xy*(x - y))*sin_a1
-        )
-        slope_2_by_a1 = (
-            2.0*(
-                -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
-                - link_length_3*(y + swap_xy*(x - y))/link_length_2
-            )*(1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-            - 2.0*(1.0 + link_length_3/link_length_2)*link_length_1*cos_a1*(
-                link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                - link_length_3*(x + (y - x)*swap_xy)/link_length_2
+        if swap_xy:
+            slope_1_by_a1 = (
+                2.0*link_length_1*(y + link_length_1*sin_a1)*cos_a1 - 2.0*link_length_1*(x + link_length_1*cos_a1)*sin_a1
             )
-        )
+            slope_2_by_a1 = (
+                2.0*(
+                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
+                    - link_length_3*x/link_length_2
+                )*(1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
+                - 2.0*(1.0 + link_length_3/link_length_2)*link_length_1*cos_a1*(
+                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
+                    - link_length_3*y/link_length_2
+                )
+            )
+            slope_2_by_a2 = (
+                -2.0*(
+                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
+                    - link_length_3*x/link_length_2
+                )*link_length_5*cos_a2
+                - 2.0*link_length_5*(
+                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
+                    - link_length_3*y/link_length_2
+                )*sin_a2
+            )
+        else:
+            slope_1_by_a1 = (
+                2.0*link_length_1*(x + link_length_1*sin_a1)*cos_a1 - 2.0*link_length_1*(y + link_length_1*cos_a1)*sin_a1
+            )
+            slope_2_by_a1 = (
+                2.0*(
+                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
+                    - link_length_3*y/link_length_2
+                )*(1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
+                - 2.0*(1.0 + link_length_3/link_length_2)*link_length_1*cos_a1*(
+                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
+                    - link_length_3*x/link_length_2
+                )
+            )
+            slope_2_by_a2 = (
+                -2.0*(
+                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
+                    - link_length_3*y/link_length_2
+                )*link_length_5*cos_a2
+                - 2.0*link_length_5*(
+                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
+                    - link_length_3*x/link_length_2
+                )*sin_a2
+            )
         determinant_divisor = determinant if abs(determinant) > 1e-11*machine_scale*machine_scale else 1.0
-        slope_2_by_a2 = (
-            -2.0*(
-                -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
-                - link_length_3*(y + swap_xy*(x - y))/link_length_2
-            )*link_length_5*cos_a2
-            - 2.0*link_length_5*(
-                link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                - link_length_3*(x + (y - x)*swap_xy)/link_length_2
-            )*sin_a2
-        )
         return (
             (
                 (slope_1_by_y*slope_2_by_a1 - slope_1_by_a1*slope_2_by_y)/determinant_divisor,
@@ -857,7 +887,7 @@ class KinType12XY(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -893,8 +923,13 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_x = x - point_x  # the flange behind the point
         flange_y = y - point_y  # the flange behind the point
-        span_upper_x = flange_x + flange_y*swap_xy - flange_x*swap_xy  # rod upper
-        span_upper_y = flange_y + flange_x*swap_xy - flange_y*swap_xy  # rod upper
+        # rod upper
+        if swap_xy:
+            span_upper_x = flange_y
+            span_upper_y = flange_x
+        else:
+            span_upper_x = flange_x
+            span_upper_y = flange_y
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
@@ -921,20 +956,17 @@ class KinType12XY(OffsetKinematics):
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
-        span_rear_x = (
-            flange_x*link_length_3*swap_xy/link_length_2 - flange_x*link_length_3/link_length_2
-            - flange_y*link_length_3*swap_xy/link_length_2
-        )
+        if swap_xy:
+            span_rear_x = -flange_y*link_length_3/link_length_2
+            span_rear_y = -flange_x*link_length_3/link_length_2
+        else:
+            span_rear_x = -flange_x*link_length_3/link_length_2
+            span_rear_y = -flange_y*link_length_3/link_length_2
         along_a2 = (
             (link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1 - link_length_1*link_length_3*sin_a1)
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
-        # rod rear
-        span_rear_y = (
-            flange_y*link_length_3*swap_xy/link_length_2 - flange_y*link_length_3/link_length_2
-            - flange_x*link_length_3*swap_xy/link_length_2
-        )
         across_a2 = (
             (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
             /link_length_2
@@ -960,9 +992,13 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         rod_1_x = flange_x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
         rod_1_y = flange_y - centre_1_y
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
@@ -974,15 +1010,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (
-            (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
-            /link_length_3
-        )
+        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
         rod_2_x = flange_x - centre_2_x
-        centre_2_y = (
-            (link_length_2*pivot_rear_y*swap_xy - link_length_2*pivot_rear_y - link_length_2*pivot_rear_x*swap_xy)
-            /link_length_3
-        )
+        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
         rod_2_y = flange_y - centre_2_y
         type2_arms_aligned = (
             assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
@@ -994,13 +1024,13 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(
                 Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
             )
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
@@ -1028,7 +1058,12 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear
@@ -1036,16 +1071,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (
-            (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
-            /link_length_3
-        )
+        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-        centre_2_y = (
-            (link_length_2*pivot_rear_y*swap_xy - link_length_2*pivot_rear_y - link_length_2*pivot_rear_x*swap_xy)
-            /link_length_3
-        )
+        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -1068,19 +1096,19 @@ class KinType12XY(OffsetKinematics):
         flange_x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         flange_y = centre_1_y + foot_y + apart_2_x*rise
-        span_upper_x = flange_x + flange_y*swap_xy - flange_x*swap_xy  # rod upper
-        span_upper_y = flange_y + flange_x*swap_xy - flange_y*swap_xy  # rod upper
+        # rod upper
+        # rod rear
+        if swap_xy:
+            span_upper_x = flange_y
+            span_upper_y = flange_x
+            span_rear_x = -flange_y*link_length_3/link_length_2
+            span_rear_y = -flange_x*link_length_3/link_length_2
+        else:
+            span_upper_x = flange_x
+            span_upper_y = flange_y
+            span_rear_x = -flange_x*link_length_3/link_length_2
+            span_rear_y = -flange_y*link_length_3/link_length_2
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        # rod rear
-        span_rear_x = (
-            flange_x*link_length_3*swap_xy/link_length_2 - flange_x*link_length_3/link_length_2
-            - flange_y*link_length_3*swap_xy/link_length_2
-        )
-        # rod rear
-        span_rear_y = (
-            flange_y*link_length_3*swap_xy/link_length_2 - flange_y*link_length_3/link_length_2
-            - flange_x*link_length_3*swap_xy/link_length_2
-        )
         branch_w = (
             (
                 link_length_1*link_length_2*cos_a1*cos_a2 + link_length_1*link_length_3*cos_a1*cos_a2
@@ -1096,12 +1124,12 @@ class KinType12XY(OffsetKinematics):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

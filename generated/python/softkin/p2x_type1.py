@@ -36,7 +36,20 @@ from softkin._configuration import Criterion
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import root, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.p2x_type1 import unrolled
 
 if TYPE_CHECKING:
@@ -54,17 +67,17 @@ class Constants(NamedTuple):
     tcp_offset_2: float
     offset_a1: float
     offset_a2: float
-    tcp_above: float
+    tcp_above: bool
     min_type2_margin: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
     machine_scale: float
@@ -202,7 +215,7 @@ class P2XType1(OffsetKinematics):
     def _setup(
         self, arm_length_1: float, arm_length_2: float, rail_y_1: float, rail_y_2: float, tcp_offset_1: float,
         tcp_offset_2: float, offset_a1: float, offset_a2: float, lower_a1: float, upper_a1: float,
-        lower_a2: float, upper_a2: float, tcp_above: float, min_type2_margin: float, check_limits: float,
+        lower_a2: float, upper_a2: float, tcp_above: bool, min_type2_margin: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (arm_length_1 <= 1e9 and arm_length_1 > 0.0):
@@ -245,24 +258,24 @@ class P2XType1(OffsetKinematics):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         machine_scale = arm_length_1 + arm_length_2  # a length of the machine
         tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
         apart_2_y = rail_y_2 - rail_y_1
-        assembly_sign = 2.0*tcp_above - 1.0  # assembly mode of this machine
+        assembly_sign = 1.0 if tcp_above else -1.0  # assembly mode of this machine
         return Constants(
             arm_length_1=arm_length_1, arm_length_2=arm_length_2, rail_y_1=rail_y_1, rail_y_2=rail_y_2,
             tcp_offset_1=tcp_offset_1, tcp_offset_2=tcp_offset_2, offset_a1=offset_a1, offset_a2=offset_a2,
@@ -365,7 +378,7 @@ class P2XType1(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -572,7 +585,7 @@ class P2XType1(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -688,12 +701,12 @@ class P2XType1(OffsetKinematics):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

@@ -17,7 +17,7 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 9 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 13 additions, 8 multiplications, 3 divisions, 1 square roots, 3 sines
+    inverse: 13 additions, 7 multiplications, 3 divisions, 1 square roots, 3 sines
 
 As CODESYS's own block it has no orientation mode "Axis": a point beside the arm has two radii.
 
@@ -36,7 +36,20 @@ from typing import TYPE_CHECKING, NamedTuple
 from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.polar_z import unrolled
 
 if TYPE_CHECKING:
@@ -49,22 +62,22 @@ class Constants(NamedTuple):
     offset_c: float
     offset_r: float
     offset_z: float
-    check_limits: float
+    check_limits: bool
     lower_c: float
     upper_c: float
-    unlimited_c: float
+    unlimited_c: bool
     lowest_c: float
     highest_c: float
-    single_c: float
+    single_c: bool
     mid_c: float
     lower_r: float
     upper_r: float
-    unlimited_r: float
+    unlimited_r: bool
     lowest_r: float
     highest_r: float
     lower_z: float
     upper_z: float
-    unlimited_z: float
+    unlimited_z: bool
     lowest_z: float
     highest_z: float
     machine_scale: float
@@ -172,7 +185,7 @@ class PolarZ(Mechanism):
 
     def _setup(
         self, offset_c: float, offset_r: float, offset_z: float, lower_c: float, upper_c: float, lower_r: float,
-        upper_r: float, lower_z: float, upper_z: float, check_limits: float,
+        upper_r: float, lower_z: float, upper_z: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (offset_c >= -1e9 and offset_c <= 1e9):
@@ -195,35 +208,31 @@ class PolarZ(Mechanism):
             raise self._refusal("upper_z: Z: upper limit of the axis, both 0: no limit", upper_z=upper_z)
         if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
             raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
-        unlimited_c = 1.0 if abs(lower_c) + abs(upper_c) <= 0.0 else 0.0  # c: no limit
+        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: no limit
         effective_lower_c = lower_c
         effective_upper_c = upper_c
         tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
-        lowest_c = -1e12 if unlimited_c > 0.0 else effective_lower_c - tolerance_c
-        highest_c = 1e12 if unlimited_c > 0.0 else effective_upper_c + tolerance_c
+        lowest_c = -1e12 if unlimited_c else effective_lower_c - tolerance_c
+        highest_c = 1e12 if unlimited_c else effective_upper_c + tolerance_c
         # one value inside the limits
-        single_c = (
-            1.0
-            if (unlimited_c <= 0.0) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
-            else 0.0
-        )
+        single_c = (not unlimited_c) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
         if not ((lower_r < upper_r) or (abs(lower_r) + abs(upper_r) <= 0.0)):
             raise self._refusal("lower_r below upper_r, or both 0", lower_r=lower_r, upper_r=upper_r)
-        unlimited_r = 0.0  # r: no limit
+        unlimited_r = False  # r: no limit
         effective_lower_r = lower_r if abs(lower_r) + abs(upper_r) > 0.0 else offset_r
         effective_upper_r = upper_r if abs(lower_r) + abs(upper_r) > 0.0 else 1e9 + offset_r
         tolerance_r = 1e-9 + 1e-9*abs(effective_lower_r) + 1e-9*abs(effective_upper_r)
-        lowest_r = -1e12 if unlimited_r > 0.0 else effective_lower_r - tolerance_r
-        highest_r = 1e12 if unlimited_r > 0.0 else effective_upper_r + tolerance_r
+        lowest_r = -1e12 if unlimited_r else effective_lower_r - tolerance_r
+        highest_r = 1e12 if unlimited_r else effective_upper_r + tolerance_r
         if not ((lower_z < upper_z) or (abs(lower_z) + abs(upper_z) <= 0.0)):
             raise self._refusal("lower_z below upper_z, or both 0", lower_z=lower_z, upper_z=upper_z)
-        unlimited_z = 1.0 if abs(lower_z) + abs(upper_z) <= 0.0 else 0.0  # z: no limit
+        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: no limit
         effective_lower_z = lower_z
         effective_upper_z = upper_z
         tolerance_z = 1e-9 + 1e-9*abs(effective_lower_z) + 1e-9*abs(effective_upper_z)
-        lowest_z = -1e12 if unlimited_z > 0.0 else effective_lower_z - tolerance_z
-        highest_z = 1e12 if unlimited_z > 0.0 else effective_upper_z + tolerance_z
+        lowest_z = -1e12 if unlimited_z else effective_lower_z - tolerance_z
+        highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
         machine_scale = 1.0  # a length of the machine
         return Constants(
             offset_c=offset_c, offset_r=offset_r, offset_z=offset_z, check_limits=check_limits,
@@ -274,7 +283,7 @@ class PolarZ(Mechanism):
         return ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -299,8 +308,8 @@ class PolarZ(Mechanism):
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
-        near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
+        open_c = mid_c if single_c else ref_c  # C: where its turn is open
+        near_c = 360.0*(turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
         axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
@@ -421,12 +430,12 @@ class PolarZ(Mechanism):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 30 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
-    inverse: 72 additions, 72 multiplications, 21 divisions, 5 square roots, 7 sines
-    inverse, all 4 branches open: 285 additions, 288 multiplications, 84 divisions, 20 square roots, 28 sines
+    inverse: 72 additions, 69 multiplications, 21 divisions, 5 square roots, 7 sines
+    inverse, all 4 branches open: 285 additions, 276 multiplications, 84 divisions, 20 square roots, 28 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -38,7 +38,20 @@ from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.pos_rrr import unrolled
 
 if TYPE_CHECKING:
@@ -57,27 +70,27 @@ class Constants(NamedTuple):
     offset_a1: float
     offset_a2: float
     offset_a3: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
-    single_a1: float
+    single_a1: bool
     mid_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
-    single_a2: float
+    single_a2: bool
     mid_a2: float
     lower_a3: float
     upper_a3: float
-    unlimited_a3: float
+    unlimited_a3: bool
     lowest_a3: float
     highest_a3: float
-    single_a3: float
+    single_a3: bool
     mid_a3: float
     machine_scale: float
     effective_q3_2: float
@@ -223,7 +236,7 @@ class PosRRR(OffsetKinematics):
     def _setup(
         self, d1: float, a1: float, a2: float, d3: float, a3: float, d4: float, offset_a1: float,
         offset_a2: float, offset_a3: float, lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float,
-        lower_a3: float, upper_a3: float, check_limits: float,
+        lower_a3: float, upper_a3: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (d1 >= -1e9 and d1 <= 1e9):
@@ -258,48 +271,36 @@ class PosRRR(OffsetKinematics):
             raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         # one value inside the limits
-        single_a1 = (
-            1.0
-            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-            else 0.0
-        )
+        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         # one value inside the limits
-        single_a2 = (
-            1.0
-            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-            else 0.0
-        )
+        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = 1.0 if abs(lower_a3) + abs(upper_a3) <= 0.0 else 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
+        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
+        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         # one value inside the limits
-        single_a3 = (
-            1.0
-            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-            else 0.0
-        )
+        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         machine_scale = a1 + a2 + a3 + d4  # a length of the machine
         effective_q3_2 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
@@ -398,7 +399,7 @@ class PosRRR(OffsetKinematics):
         return ((r11_at_q23, sin_q1, r13), (r21_at_q23, r22, r23), (cos_q23, 0.0, sin_q23))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -521,8 +522,8 @@ class PosRRR(OffsetKinematics):
                 else:
                     cos_q1 = turned_cos_q1_for_q3
                     sin_q1 = turned_sin_q1_for_q3
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
@@ -540,15 +541,15 @@ class PosRRR(OffsetKinematics):
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
         sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
@@ -740,7 +741,7 @@ class PosRRR(OffsetKinematics):
         )
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -871,8 +872,8 @@ class PosRRR(OffsetKinematics):
                 else:
                     cos_q1 = turned_cos_q1_for_q3
                     sin_q1 = turned_sin_q1_for_q3
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
@@ -892,13 +893,13 @@ class PosRRR(OffsetKinematics):
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
@@ -962,13 +963,13 @@ class PosRRR(OffsetKinematics):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference) or super().branches(frame, reference)  # near a fold one after the other
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         found = solve(frame, signs, reference)
         return super().branch(frame, signs, reference) if found == () else found  # near a fold with all that it takes
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference) or super()._every_branch(position, rotation, reference)
 

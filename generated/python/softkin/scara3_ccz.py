@@ -19,8 +19,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 15 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 39 additions, 26 multiplications, 8 divisions, 2 square roots, 4 sines
-    inverse, all 2 branches open: 77 additions, 52 multiplications, 16 divisions, 4 square roots, 8 sines
+    inverse: 39 additions, 24 multiplications, 8 divisions, 2 square roots, 4 sines
+    inverse, all 2 branches open: 77 additions, 48 multiplications, 16 divisions, 4 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -36,7 +36,20 @@ from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.scara3_ccz import unrolled
 
 if TYPE_CHECKING:
@@ -51,24 +64,24 @@ class Constants(NamedTuple):
     offset_a1: float
     offset_a2: float
     offset_a3: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
-    single_a1: float
+    single_a1: bool
     mid_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
-    single_a2: float
+    single_a2: bool
     mid_a2: float
     lower_a3: float
     upper_a3: float
-    unlimited_a3: float
+    unlimited_a3: bool
     lowest_a3: float
     highest_a3: float
     machine_scale: float
@@ -189,7 +202,7 @@ class Scara3CCZ(OffsetKinematics):
     def _setup(
         self, link_length_1: float, link_length_2: float, offset_a1: float, offset_a2: float, offset_a3: float,
         lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float, lower_a3: float, upper_a3: float,
-        check_limits: float,
+        check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (link_length_1 <= 1e9 and link_length_1 > 0.0):
@@ -216,42 +229,34 @@ class Scara3CCZ(OffsetKinematics):
             raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         # one value inside the limits
-        single_a1 = (
-            1.0
-            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-            else 0.0
-        )
+        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         # one value inside the limits
-        single_a2 = (
-            1.0
-            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-            else 0.0
-        )
+        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = 1.0 if abs(lower_a3) + abs(upper_a3) <= 0.0 else 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
+        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
+        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         machine_scale = link_length_1 + link_length_2  # a length of the machine
         scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
         return Constants(
@@ -304,7 +309,7 @@ class Scara3CCZ(OffsetKinematics):
         return ((cos_a12, -sin_a12, 0.0), (sin_a12, cos_a12, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -357,13 +362,13 @@ class Scara3CCZ(OffsetKinematics):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
@@ -477,7 +482,7 @@ class Scara3CCZ(OffsetKinematics):
         )
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -539,13 +544,13 @@ class Scara3CCZ(OffsetKinematics):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
@@ -579,12 +584,12 @@ class Scara3CCZ(OffsetKinematics):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

@@ -20,9 +20,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 29 additions, 15 multiplications, 5 divisions, 0 square roots, 7 sines
-    inverse: 92 additions, 85 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 151 additions, 125 multiplications, 35 divisions, 8 square roots, 10 sines
+    forward: 26 additions, 12 multiplications, 5 divisions, 0 square roots, 7 sines
+    inverse: 92 additions, 78 multiplications, 22 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 151 additions, 111 multiplications, 35 divisions, 8 square roots, 10 sines
 
 The coupling may be given as travel per turn (pitch) or per degree (gear coupling), never both.
 
@@ -43,7 +43,20 @@ from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.scara4_cczc_zccoupled import unrolled
 
 if TYPE_CHECKING:
@@ -57,37 +70,37 @@ class Constants(NamedTuple):
     link_length_2: float
     pitch_zc: float
     gear_coupling: float
-    flange_down: float
+    flange_down: bool
     offset_a1: float
     offset_a2: float
     offset_a3: float
     offset_a4: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
-    single_a1: float
+    single_a1: bool
     mid_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
-    single_a2: float
+    single_a2: bool
     mid_a2: float
     lower_a3: float
     upper_a3: float
-    unlimited_a3: float
+    unlimited_a3: bool
     lowest_a3: float
     highest_a3: float
     lower_a4: float
     upper_a4: float
-    unlimited_a4: float
+    unlimited_a4: bool
     lowest_a4: float
     highest_a4: float
-    single_a4: float
+    single_a4: bool
     mid_a4: float
     machine_scale: float
     scale_a2: float
@@ -245,9 +258,9 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
 
     def _setup(
         self, link_length_1: float, link_length_2: float, pitch_zc: float, gear_coupling: float,
-        flange_down: float, offset_a1: float, offset_a2: float, offset_a3: float, offset_a4: float,
+        flange_down: bool, offset_a1: float, offset_a2: float, offset_a3: float, offset_a4: float,
         lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float, lower_a3: float, upper_a3: float,
-        lower_a4: float, upper_a4: float, check_limits: float,
+        lower_a4: float, upper_a4: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (link_length_1 <= 1e9 and link_length_1 > 0.0):
@@ -300,49 +313,39 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         # one value inside the limits
-        single_a1 = (
-            1.0
-            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-            else 0.0
-        )
+        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         # one value inside the limits
-        single_a2 = (
-            1.0
-            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-            else 0.0
-        )
+        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = 1.0 if abs(lower_a3) + abs(upper_a3) <= 0.0 else 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
+        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
+        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
         # a4: no limit
         unlimited_a4 = (
-            (0.0 if abs(gear_coupling/DEGREE - pitch_zc/(360.0*DEGREE)) > 0.0 else 1.0)
-            if abs(lower_a4) + abs(upper_a4) <= 0.0
-            else 0.0
+            (abs(lower_a4) + abs(upper_a4) <= 0.0) and (abs(gear_coupling/DEGREE - pitch_zc/(360.0*DEGREE)) <= 0.0)
         )
         effective_lower_a4 = (
             lower_a4
@@ -355,14 +358,10 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             else (720.0 if abs(gear_coupling/DEGREE - pitch_zc/(360.0*DEGREE)) > 0.0 else 0.0)
         )
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
-        lowest_a4 = -1e12 if unlimited_a4 > 0.0 else effective_lower_a4 - tolerance_a4
-        highest_a4 = 1e12 if unlimited_a4 > 0.0 else effective_upper_a4 + tolerance_a4
+        lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
+        highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
         # one value inside the limits
-        single_a4 = (
-            1.0
-            if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
-            else 0.0
-        )
+        single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         machine_scale = link_length_1 + link_length_2  # a length of the machine
         scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
@@ -413,9 +412,9 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         return (
             (x, y, z),
             (
-                (cos_a124, -(1.0 - 2.0*flange_down)*sin_a124, 0.0),
-                (sin_a124, (1.0 - 2.0*flange_down)*cos_a124, 0.0),
-                (0.0, 0.0, 1.0 - 2.0*flange_down),
+                (cos_a124, -(-1.0 if flange_down else 1.0)*sin_a124, 0.0),
+                (sin_a124, (-1.0 if flange_down else 1.0)*cos_a124, 0.0),
+                (0.0, 0.0, (-1.0 if flange_down else 1.0)),
             ),
             (sin_a2,),
         )
@@ -439,13 +438,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_a124 = cos(a1 + a2 + a4)
         sin_a124 = sin(a1 + a2 + a4)
         return (
-            (cos_a124, -(1.0 - 2.0*flange_down)*sin_a124, 0.0),
-            (sin_a124, (1.0 - 2.0*flange_down)*cos_a124, 0.0),
-            (0.0, 0.0, 1.0 - 2.0*flange_down),
+            (cos_a124, -(-1.0 if flange_down else 1.0)*sin_a124, 0.0),
+            (sin_a124, (-1.0 if flange_down else 1.0)*cos_a124, 0.0),
+            (0.0, 0.0, (-1.0 if flange_down else 1.0)),
         )
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -478,8 +477,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # projection: the tool direction swings to the machine's, the twist is kept
-        heading_along = r11 + (1.0 - 2.0*flange_down)*r22
-        heading_across = r21 - (1.0 - 2.0*flange_down)*r12
+        if flange_down:
+            heading_along = r11 - r22
+            heading_across = r12 + r21
+        else:
+            heading_along = r11 + r22
+            heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
@@ -513,20 +516,20 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(heading_across + 0.0, heading_along + 0.0)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
-        near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
         axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
@@ -637,9 +640,9 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         k = self._constants
         flange_down = k.flange_down
         return (
-            ((1.0, 0.0, 0.0), (0.0, 1.0 - 2.0*flange_down, 0.0), (0.0, 0.0, 1.0 - 2.0*flange_down)),
+            ((1.0, 0.0, 0.0), (0.0, (-1.0 if flange_down else 1.0), 0.0), (0.0, 0.0, (-1.0 if flange_down else 1.0))),
             (0.0, 0.0, 1.0),
-            (0.0, 0.0, 1.0 - 2.0*flange_down),
+            (0.0, 0.0, (-1.0 if flange_down else 1.0)),
         )
 
     def _twist(self, axes: Reals) -> Matrix | Status:
@@ -678,8 +681,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         k = self._constants
         flange_down = k.flange_down
         # projection: the tool direction swings to the machine's, the twist is kept
-        heading_along = r11 + (1.0 - 2.0*flange_down)*r22
-        heading_across = r21 - (1.0 - 2.0*flange_down)*r12
+        if flange_down:
+            heading_along = r11 - r22
+            heading_across = r12 + r21
+        else:
+            heading_along = r11 + r22
+            heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
@@ -688,13 +695,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
         return (
-            (cos_heading, -(1.0 - 2.0*flange_down)*sin_heading, 0.0),
-            (sin_heading, (1.0 - 2.0*flange_down)*cos_heading, 0.0),
-            (0.0, 0.0, 1.0 - 2.0*flange_down),
+            (cos_heading, -(-1.0 if flange_down else 1.0)*sin_heading, 0.0),
+            (sin_heading, (-1.0 if flange_down else 1.0)*cos_heading, 0.0),
+            (0.0, 0.0, (-1.0 if flange_down else 1.0)),
         )
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -728,9 +735,9 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_a4 = cos(free_a4)
         sin_a4 = sin(free_a4)
         # the point seen from the last moving joint
-        tool_x = link_length_2 + point_x*cos_a4 + 2.0*flange_down*point_y*sin_a4 - point_y*sin_a4
+        tool_x = link_length_2 + (2.0*point_y*sin_a4 if flange_down else 0.0) + point_x*cos_a4 - point_y*sin_a4
         # the point seen from the last moving joint
-        tool_y = point_y*cos_a4 + point_x*sin_a4 - 2.0*flange_down*point_y*cos_a4
+        tool_y = point_x*sin_a4 - point_y*cos_a4 if flange_down else point_y*cos_a4 + point_x*sin_a4
         effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > 1e-9*link_length_1):
@@ -767,18 +774,21 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # the point seen from the last moving joint
-        tool_z = point_z + free_a4*gear_coupling/DEGREE - 2.0*flange_down*point_z - free_a4*pitch_zc/(360.0*DEGREE)
+        tool_z = (
+            point_z + (-2.0*point_z if flange_down else 0.0) + free_a4*gear_coupling/DEGREE
+            - free_a4*pitch_zc/(360.0*DEGREE)
+        )
         a3 = z - tool_z  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, ref_a4)
@@ -806,9 +816,9 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         sin_a4 = sin(a4)
         cos_a4 = cos(a4)
         # the point seen from the last moving joint
-        tool_x = link_length_2 + point_x*cos_a4 + 2.0*flange_down*point_y*sin_a4 - point_y*sin_a4
+        tool_x = link_length_2 + (2.0*point_y*sin_a4 if flange_down else 0.0) + point_x*cos_a4 - point_y*sin_a4
         # the point seen from the last moving joint
-        tool_y = point_y*cos_a4 + point_x*sin_a4 - 2.0*flange_down*point_y*cos_a4
+        tool_y = point_x*sin_a4 - point_y*cos_a4 if flange_down else point_y*cos_a4 + point_x*sin_a4
         branch_elbow = (tool_y*cos_a2 + tool_x*sin_a2)/machine_scale
         return (branch_elbow,)
 
@@ -817,12 +827,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

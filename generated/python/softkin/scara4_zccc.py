@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 89 additions, 79 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 145 additions, 113 multiplications, 35 divisions, 8 square roots, 10 sines
+    inverse: 89 additions, 76 multiplications, 22 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 145 additions, 107 multiplications, 35 divisions, 8 square roots, 10 sines
 
 The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
 
@@ -43,7 +43,20 @@ from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.scara4_zccc import unrolled
 
 if TYPE_CHECKING:
@@ -60,32 +73,32 @@ class Constants(NamedTuple):
     offset_a2: float
     offset_a3: float
     offset_a4: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
-    single_a2: float
+    single_a2: bool
     mid_a2: float
     lower_a3: float
     upper_a3: float
-    unlimited_a3: float
+    unlimited_a3: bool
     lowest_a3: float
     highest_a3: float
-    single_a3: float
+    single_a3: bool
     mid_a3: float
     lower_a4: float
     upper_a4: float
-    unlimited_a4: float
+    unlimited_a4: bool
     lowest_a4: float
     highest_a4: float
-    single_a4: float
+    single_a4: bool
     mid_a4: float
     machine_scale: float
     scale_a3: float
@@ -229,7 +242,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     def _setup(
         self, link_length_1: float, link_length_2: float, link_length_3: float, offset_a1: float,
         offset_a2: float, offset_a3: float, offset_a4: float, lower_a1: float, upper_a1: float, lower_a2: float,
-        upper_a2: float, lower_a3: float, upper_a3: float, lower_a4: float, upper_a4: float, check_limits: float,
+        upper_a2: float, lower_a3: float, upper_a3: float, lower_a4: float, upper_a4: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (link_length_1 <= 1e9 and link_length_1 > 0.0):
@@ -264,56 +277,44 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             raise self._refusal("upper_a4: A4: upper limit of the axis, both 0: no limit", upper_a4=upper_a4)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         # one value inside the limits
-        single_a2 = (
-            1.0
-            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-            else 0.0
-        )
+        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = 1.0 if abs(lower_a3) + abs(upper_a3) <= 0.0 else 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
+        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
+        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         # one value inside the limits
-        single_a3 = (
-            1.0
-            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-            else 0.0
-        )
+        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = 1.0 if abs(lower_a4) + abs(upper_a4) <= 0.0 else 0.0  # a4: no limit
+        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: no limit
         effective_lower_a4 = lower_a4
         effective_upper_a4 = upper_a4
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
-        lowest_a4 = -1e12 if unlimited_a4 > 0.0 else effective_lower_a4 - tolerance_a4
-        highest_a4 = 1e12 if unlimited_a4 > 0.0 else effective_upper_a4 + tolerance_a4
+        lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
+        highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
         # one value inside the limits
-        single_a4 = (
-            1.0
-            if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
-            else 0.0
-        )
+        single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         machine_scale = link_length_1 + link_length_2 + link_length_3  # a length of the machine
         scale_a3 = 2.0*link_length_1*link_length_2  # a3: law of cosines in the x² + y² equation
@@ -380,7 +381,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         return ((cos_a234, -sin_a234, 0.0), (sin_a234, cos_a234, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -451,20 +452,20 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             direction_x_a2 = cos(free_a2)
             direction_y_a2 = sin(free_a2)
         angle_a2 = arctan2(direction_y_a2 + 0.0, direction_x_a2 + 0.0)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_a3 = arctan2(sin_a3 + 0.0, cos_a3 + 0.0)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + angle_a3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
-        near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         # a4: what the sum a234 leaves; A4: its turn
         axis_a4 = offset_a4 + (angle_heading - angle_a2 - angle_a3)/DEGREE
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
@@ -634,7 +635,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -706,13 +707,13 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             direction_x_a2 = cos(free_a2)
             direction_y_a2 = sin(free_a2)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(direction_y_a2, direction_x_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
@@ -751,12 +752,12 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 28 additions, 12 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 109 additions, 99 multiplications, 30 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 179 additions, 147 multiplications, 49 divisions, 8 square roots, 10 sines
+    inverse: 109 additions, 96 multiplications, 30 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 179 additions, 141 multiplications, 49 divisions, 8 square roots, 10 sines
 
 A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.
 
@@ -45,7 +45,20 @@ from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.sccc import unrolled
 
 if TYPE_CHECKING:
@@ -64,36 +77,36 @@ class Constants(NamedTuple):
     offset_a1: float
     offset_a2: float
     offset_a3: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
-    single_a1: float
+    single_a1: bool
     mid_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
-    single_a2: float
+    single_a2: bool
     mid_a2: float
     lower_a3: float
     upper_a3: float
-    unlimited_a3: float
+    unlimited_a3: bool
     lowest_a3: float
     highest_a3: float
-    single_a3: float
+    single_a3: bool
     mid_a3: float
     lower_joint_2: float
     upper_joint_2: float
-    unlimited_joint_2: float
+    unlimited_joint_2: bool
     lowest_joint_2: float
     highest_joint_2: float
     lower_joint_3: float
     upper_joint_3: float
-    unlimited_joint_3: float
+    unlimited_joint_3: bool
     lowest_joint_3: float
     highest_joint_3: float
     machine_scale: float
@@ -262,7 +275,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         coupling_13: float, coupling_23: float, offset_a1: float, offset_a2: float, offset_a3: float,
         lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float, lower_a3: float, upper_a3: float,
         lower_joint_2: float, upper_joint_2: float, lower_joint_3: float, upper_joint_3: float,
-        check_limits: float,
+        check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (link_length_1 <= 1e9 and link_length_1 > 0.0):
@@ -313,71 +326,59 @@ class SCCC(OffsetKinematics, TwistChoice):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         # one value inside the limits
-        single_a1 = (
-            1.0
-            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-            else 0.0
-        )
+        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         # one value inside the limits
-        single_a2 = (
-            1.0
-            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-            else 0.0
-        )
+        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = 1.0 if abs(lower_a3) + abs(upper_a3) <= 0.0 else 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
+        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
+        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         # one value inside the limits
-        single_a3 = (
-            1.0
-            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-            else 0.0
-        )
+        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_joint_2 < upper_joint_2) or (abs(lower_joint_2) + abs(upper_joint_2) <= 0.0)):
             raise self._refusal(
                 "lower_joint_2 below upper_joint_2, or both 0", lower_joint_2=lower_joint_2,
                 upper_joint_2=upper_joint_2,
             )
-        unlimited_joint_2 = 1.0 if abs(lower_joint_2) + abs(upper_joint_2) <= 0.0 else 0.0  # joint_2: no limit
+        unlimited_joint_2 = abs(lower_joint_2) + abs(upper_joint_2) <= 0.0  # joint_2: no limit
         effective_lower_joint_2 = lower_joint_2
         effective_upper_joint_2 = upper_joint_2
         tolerance_joint_2 = 1e-9 + 1e-9*abs(effective_lower_joint_2) + 1e-9*abs(effective_upper_joint_2)
-        lowest_joint_2 = -1e12 if unlimited_joint_2 > 0.0 else effective_lower_joint_2 - tolerance_joint_2
-        highest_joint_2 = 1e12 if unlimited_joint_2 > 0.0 else effective_upper_joint_2 + tolerance_joint_2
+        lowest_joint_2 = -1e12 if unlimited_joint_2 else effective_lower_joint_2 - tolerance_joint_2
+        highest_joint_2 = 1e12 if unlimited_joint_2 else effective_upper_joint_2 + tolerance_joint_2
         if not ((lower_joint_3 < upper_joint_3) or (abs(lower_joint_3) + abs(upper_joint_3) <= 0.0)):
             raise self._refusal(
                 "lower_joint_3 below upper_joint_3, or both 0", lower_joint_3=lower_joint_3,
                 upper_joint_3=upper_joint_3,
             )
-        unlimited_joint_3 = 1.0 if abs(lower_joint_3) + abs(upper_joint_3) <= 0.0 else 0.0  # joint_3: no limit
+        unlimited_joint_3 = abs(lower_joint_3) + abs(upper_joint_3) <= 0.0  # joint_3: no limit
         effective_lower_joint_3 = lower_joint_3
         effective_upper_joint_3 = upper_joint_3
         tolerance_joint_3 = 1e-9 + 1e-9*abs(effective_lower_joint_3) + 1e-9*abs(effective_upper_joint_3)
-        lowest_joint_3 = -1e12 if unlimited_joint_3 > 0.0 else effective_lower_joint_3 - tolerance_joint_3
-        highest_joint_3 = 1e12 if unlimited_joint_3 > 0.0 else effective_upper_joint_3 + tolerance_joint_3
+        lowest_joint_3 = -1e12 if unlimited_joint_3 else effective_lower_joint_3 - tolerance_joint_3
+        highest_joint_3 = 1e12 if unlimited_joint_3 else effective_upper_joint_3 + tolerance_joint_3
         machine_scale = link_length_1 + link_length_2 + link_length_3  # a length of the machine
         scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
         return Constants(
@@ -450,7 +451,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         return ((cos_a123, -sin_a123, 0.0), (sin_a123, cos_a123, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -526,34 +527,34 @@ class SCCC(OffsetKinematics, TwistChoice):
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
-        if abs(turn_a2) > 0.0:
-            near_a2 = 360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2
+        if turn_a2 != 0:
+            near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
             # A2: where its turn is open
-            open_a2 = mid_a2 if single_a2 > 0.0 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
+            open_a2 = mid_a2 if single_a2 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
             near_a2 = open_a2
         axis_a2 = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        if abs(turn_a3) > 0.0:
-            near_a3 = 360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3
+        if turn_a3 != 0:
+            near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3)
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             # A3: where its turn is open
-            if single_a3 > 0.0:
+            if single_a3:
                 open_a3 = mid_a3
             else:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
@@ -813,7 +814,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -891,18 +892,18 @@ class SCCC(OffsetKinematics, TwistChoice):
         else:
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
-        if abs(turn_a2) > 0.0:
-            near_a2 = 360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2
+        if turn_a2 != 0:
+            near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
             free_a2 = ref_motor_a2 + coupling_12*free_a1
             # A2: where its turn is open
-            open_a2 = mid_a2 if single_a2 > 0.0 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
+            open_a2 = mid_a2 if single_a2 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
             near_a2 = open_a2
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
@@ -951,12 +952,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

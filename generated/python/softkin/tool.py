@@ -29,7 +29,18 @@ from typing import TYPE_CHECKING, NamedTuple
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import sqrt
-from softkin._types import Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.tool import unrolled
 
 if TYPE_CHECKING:
@@ -42,7 +53,7 @@ class Constants(NamedTuple):
     tool_x: float
     tool_y: float
     tool_z: float
-    check_limits: float
+    check_limits: bool
     machine_scale: float
     unnoticed_shift: float
 
@@ -100,7 +111,7 @@ class Tool(OrientationKinematics):
         self._constants = self._setup(*values)
         self._all_checked, self._all_trusted, self._one_trusted = unrolled(self._constants)
 
-    def _setup(self, tool_x: float, tool_y: float, tool_z: float, check_limits: float) -> Constants:
+    def _setup(self, tool_x: float, tool_y: float, tool_z: float, check_limits: bool) -> Constants:
         """The constants of the machine."""
         if not (tool_x >= -1e9 and tool_x <= 1e9):
             raise self._refusal("tool_x: Flange to the tool, along X", tool_x=tool_x)
@@ -128,7 +139,7 @@ class Tool(OrientationKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         return ()
@@ -214,12 +225,12 @@ class Tool(OrientationKinematics):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

@@ -42,7 +42,20 @@ from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.tripod_rotary import unrolled
 
 if TYPE_CHECKING:
@@ -61,29 +74,29 @@ class Constants(NamedTuple):
     offset_a1: float
     offset_a2: float
     offset_a3: float
-    tcp_above: float
+    tcp_above: bool
     min_type2_margin: float
-    check_limits: float
+    check_limits: bool
     lower_a1: float
     upper_a1: float
-    unlimited_a1: float
+    unlimited_a1: bool
     lowest_a1: float
     highest_a1: float
-    single_a1: float
+    single_a1: bool
     mid_a1: float
     lower_a2: float
     upper_a2: float
-    unlimited_a2: float
+    unlimited_a2: bool
     lowest_a2: float
     highest_a2: float
-    single_a2: float
+    single_a2: bool
     mid_a2: float
     lower_a3: float
     upper_a3: float
-    unlimited_a3: float
+    unlimited_a3: bool
     lowest_a3: float
     highest_a3: float
-    single_a3: float
+    single_a3: bool
     mid_a3: float
     machine_scale: float
     fixed_length_1: float
@@ -255,7 +268,7 @@ class TripodRotary(OffsetKinematics):
         self, arm_length_1: float, arm_length_2: float, arm_1_radius: float, stewart_radius: float,
         distance: float, max_angle_ball_joint: float, offset_a1: float, offset_a2: float, offset_a3: float,
         lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float, lower_a3: float, upper_a3: float,
-        tcp_above: float, min_type2_margin: float, check_limits: float,
+        tcp_above: bool, min_type2_margin: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (arm_length_1 <= 1e9 and arm_length_1 > 0.0):
@@ -315,48 +328,36 @@ class TripodRotary(OffsetKinematics):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
+        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
+        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         # one value inside the limits
-        single_a1 = (
-            1.0
-            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-            else 0.0
-        )
+        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = 1.0 if abs(lower_a2) + abs(upper_a2) <= 0.0 else 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
+        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
+        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         # one value inside the limits
-        single_a2 = (
-            1.0
-            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-            else 0.0
-        )
+        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = 1.0 if abs(lower_a3) + abs(upper_a3) <= 0.0 else 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
+        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
+        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         # one value inside the limits
-        single_a3 = (
-            1.0
-            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-            else 0.0
-        )
+        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         # a length of the machine
         machine_scale = arm_1_radius + arm_length_1 + arm_length_2 + distance + stewart_radius
@@ -367,7 +368,7 @@ class TripodRotary(OffsetKinematics):
             -(arm_1_radius + arm_length_1 + arm_length_2 - fixed_length_1)
             *(arm_1_radius + arm_length_1 - arm_length_2 - fixed_length_1)
         )
-        assembly_sign = 2.0*tcp_above - 1.0  # assembly mode of this machine
+        assembly_sign = 1.0 if tcp_above else -1.0  # assembly mode of this machine
         sin_max_angle_ball_joint = sin(DEGREE*max_angle_ball_joint)
         return Constants(
             arm_length_1=arm_length_1, arm_length_2=arm_length_2, arm_1_radius=arm_1_radius,
@@ -547,7 +548,7 @@ class TripodRotary(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -596,16 +597,7 @@ class TripodRotary(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            missing = abs(
-                arm_length_2
-                - root(
-                    0.5*abs(third_square_a1 - (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1))
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
-                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-                    - 0.5*abs(third_square_a1 - (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1))
-                )
-            )
-            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach", 0.0)
         span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
         span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
@@ -628,16 +620,7 @@ class TripodRotary(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            missing = abs(
-                arm_length_2
-                - root(
-                    0.5*abs(third_square_a2 - (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2))
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
-                    - 0.5*abs(third_square_a2 - (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2))
-                )
-            )
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
@@ -658,16 +641,7 @@ class TripodRotary(OffsetKinematics):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-            missing = abs(
-                arm_length_2
-                - root(
-                    0.5*abs(third_square_a3 - (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3))
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
-                    - 0.5*abs(third_square_a3 - (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3))
-                )
-            )
-            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach", 0.0)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
@@ -779,18 +753,18 @@ class TripodRotary(OffsetKinematics):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
@@ -1083,7 +1057,7 @@ class TripodRotary(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -1137,16 +1111,7 @@ class TripodRotary(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            missing = abs(
-                arm_length_2
-                - root(
-                    0.5*abs(third_square_a1 - (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1))
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
-                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-                    - 0.5*abs(third_square_a1 - (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1))
-                )
-            )
-            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach", 0.0)
         span_2_x = 0.5*fixed_length_1 + flange_x - 0.5*arm_1_radius  # rod 2
         span_2_y = flange_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
@@ -1169,16 +1134,7 @@ class TripodRotary(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            missing = abs(
-                arm_length_2
-                - root(
-                    0.5*abs(third_square_a2 - (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2))
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
-                    - 0.5*abs(third_square_a2 - (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2))
-                )
-            )
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         span_3_y = flange_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
@@ -1199,16 +1155,7 @@ class TripodRotary(OffsetKinematics):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-            missing = abs(
-                arm_length_2
-                - root(
-                    0.5*abs(third_square_a3 - (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3))
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
-                    - 0.5*abs(third_square_a3 - (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3))
-                )
-            )
-            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach", 0.0)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
@@ -1321,18 +1268,18 @@ class TripodRotary(OffsetKinematics):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
@@ -1429,12 +1376,12 @@ class TripodRotary(OffsetKinematics):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

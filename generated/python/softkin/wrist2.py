@@ -18,8 +18,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 15 additions, 19 multiplications, 2 divisions, 0 square roots, 4 sines
-    inverse: 57 additions, 59 multiplications, 17 divisions, 3 square roots, 4 sines
-    inverse, all 2 branches open: 81 additions, 73 multiplications, 25 divisions, 4 square roots, 8 sines
+    inverse: 57 additions, 57 multiplications, 17 divisions, 3 square roots, 4 sines
+    inverse, all 2 branches open: 81 additions, 69 multiplications, 25 divisions, 4 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -35,7 +35,20 @@ from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.wrist2 import unrolled
 
 if TYPE_CHECKING:
@@ -52,20 +65,20 @@ class Constants(NamedTuple):
     tool_side: float
     offset_a: float
     offset_b: float
-    check_limits: float
+    check_limits: bool
     lower_a: float
     upper_a: float
-    unlimited_a: float
+    unlimited_a: bool
     lowest_a: float
     highest_a: float
-    single_a: float
+    single_a: bool
     mid_a: float
     lower_b: float
     upper_b: float
-    unlimited_b: float
+    unlimited_b: bool
     lowest_b: float
     highest_b: float
-    single_b: float
+    single_b: bool
     mid_b: float
     machine_scale: float
     unnoticed_shift: float
@@ -188,8 +201,8 @@ class Wrist2(OrientationKinematics):
 
     def _setup(
         self, tool_length: float, roll_axis_offset_x: float, roll_axis_offset_y: float, roll_axis_offset_z: float,
-        tool_side: float, offset_a: float, offset_b: float, lower_a: float, upper_a: float, lower_b: float,
-        upper_b: float, check_limits: float,
+        tool_side: int, offset_a: float, offset_b: float, lower_a: float, upper_a: float, lower_b: float,
+        upper_b: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (tool_length >= -1e9 and tool_length <= 1e9):
@@ -206,7 +219,7 @@ class Wrist2(OrientationKinematics):
             raise self._refusal(
                 "roll_axis_offset_z: Flange to axis B, along Z", roll_axis_offset_z=roll_axis_offset_z,
             )
-        if not (abs(tool_side) >= 1.0 and -1.0 <= tool_side <= 1.0):
+        if not ((tool_side == -1) or (tool_side == 1)):
             raise self._refusal(
                 "tool_side: +1: the tool points along +Z (library 4.16 and later), -1: along -Z (library 4.12)",
                 tool_side=tool_side,
@@ -225,33 +238,25 @@ class Wrist2(OrientationKinematics):
             raise self._refusal("upper_b: B: upper limit of the axis, both 0: no limit", upper_b=upper_b)
         if not ((lower_a < upper_a) or (abs(lower_a) + abs(upper_a) <= 0.0)):
             raise self._refusal("lower_a below upper_a, or both 0", lower_a=lower_a, upper_a=upper_a)
-        unlimited_a = 1.0 if abs(lower_a) + abs(upper_a) <= 0.0 else 0.0  # a: no limit
+        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: no limit
         effective_lower_a = lower_a
         effective_upper_a = upper_a
         tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
-        lowest_a = -1e12 if unlimited_a > 0.0 else effective_lower_a - tolerance_a
-        highest_a = 1e12 if unlimited_a > 0.0 else effective_upper_a + tolerance_a
+        lowest_a = -1e12 if unlimited_a else effective_lower_a - tolerance_a
+        highest_a = 1e12 if unlimited_a else effective_upper_a + tolerance_a
         # one value inside the limits
-        single_a = (
-            1.0
-            if (unlimited_a <= 0.0) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
-            else 0.0
-        )
+        single_a = (not unlimited_a) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
         mid_a = 0.5*effective_lower_a + 0.5*effective_upper_a
         if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
             raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
-        unlimited_b = 1.0 if abs(lower_b) + abs(upper_b) <= 0.0 else 0.0  # b: no limit
+        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: no limit
         effective_lower_b = lower_b
         effective_upper_b = upper_b
         tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
-        lowest_b = -1e12 if unlimited_b > 0.0 else effective_lower_b - tolerance_b
-        highest_b = 1e12 if unlimited_b > 0.0 else effective_upper_b + tolerance_b
+        lowest_b = -1e12 if unlimited_b else effective_lower_b - tolerance_b
+        highest_b = 1e12 if unlimited_b else effective_upper_b + tolerance_b
         # one value inside the limits
-        single_b = (
-            1.0
-            if (unlimited_b <= 0.0) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
-            else 0.0
-        )
+        single_b = (not unlimited_b) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
         mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
         machine_scale = 1.0  # a length of the machine
         # as much may turn with the flange
@@ -330,7 +335,7 @@ class Wrist2(OrientationKinematics):
         return ((r11_at_b, r12, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
@@ -353,20 +358,20 @@ class Wrist2(OrientationKinematics):
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
         # a: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_a > 1e-11:
-            direction_x_a = r13_of_a*sigma_roll
-            direction_y_a = r23_of_a*sigma_roll
+            direction_x_a = sigma_roll*r13_of_a
+            direction_y_a = sigma_roll*r23_of_a
         else:
             free_a = (ref_a - offset_a)*DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
-        open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
-        near_a = (360.0*turn_a - 360.0 if turn_a > 0.0 else 360.0*turn_a) if abs(turn_a) > 0.0 else open_a
+        open_a = mid_a if single_a else ref_a  # A: where its turn is open
+        near_a = 360.0*(turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
         axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0)/DEGREE  # A: its turn
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
-        a_radius_of_b = radius_a*sigma_roll
-        open_b = mid_b if single_b > 0.0 else ref_b  # B: where its turn is open
-        near_b = (360.0*turn_b - 360.0 if turn_b > 0.0 else 360.0*turn_b) if abs(turn_b) > 0.0 else open_b
+        a_radius_of_b = sigma_roll*radius_a
+        open_b = mid_b if single_b else ref_b  # B: where its turn is open
+        near_b = 360.0*(turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
         axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0)/DEGREE  # B: its turn
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
@@ -533,12 +538,12 @@ class Wrist2(OrientationKinematics):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

@@ -19,8 +19,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 25 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
-    inverse: 70 additions, 67 multiplications, 18 divisions, 3 square roots, 5 sines
-    inverse, all 2 branches open: 107 additions, 89 multiplications, 27 divisions, 4 square roots, 10 sines
+    inverse: 70 additions, 64 multiplications, 18 divisions, 3 square roots, 5 sines
+    inverse, all 2 branches open: 107 additions, 83 multiplications, 27 divisions, 4 square roots, 10 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -36,7 +36,20 @@ from softkin._configuration import turn_inside
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
+from softkin._types import (
+    Axis,
+    ConfigurationByte,
+    Diagnosis,
+    Matrix,
+    Parameter,
+    PlainFrame,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
 from softkin._unrolled.wrist3 import unrolled
 
 if TYPE_CHECKING:
@@ -52,27 +65,27 @@ class Constants(NamedTuple):
     offset_a: float
     offset_b: float
     offset_c: float
-    check_limits: float
+    check_limits: bool
     lower_a: float
     upper_a: float
-    unlimited_a: float
+    unlimited_a: bool
     lowest_a: float
     highest_a: float
-    single_a: float
+    single_a: bool
     mid_a: float
     lower_b: float
     upper_b: float
-    unlimited_b: float
+    unlimited_b: bool
     lowest_b: float
     highest_b: float
-    single_b: float
+    single_b: bool
     mid_b: float
     lower_c: float
     upper_c: float
-    unlimited_c: float
+    unlimited_c: bool
     lowest_c: float
     highest_c: float
-    single_c: float
+    single_c: bool
     mid_c: float
     machine_scale: float
 
@@ -198,7 +211,7 @@ class Wrist3(OrientationKinematics):
     def _setup(
         self, tool_offset_x: float, tool_offset_y: float, tool_offset_z: float, offset_a: float, offset_b: float,
         offset_c: float, lower_a: float, upper_a: float, lower_b: float, upper_b: float, lower_c: float,
-        upper_c: float, check_limits: float,
+        upper_c: float, check_limits: bool,
     ) -> Constants:
         """The constants of the machine."""
         if not (tool_offset_x >= -1e9 and tool_offset_x <= 1e9):
@@ -227,48 +240,36 @@ class Wrist3(OrientationKinematics):
             raise self._refusal("upper_c: C: upper limit of the axis, both 0: no limit", upper_c=upper_c)
         if not ((lower_a < upper_a) or (abs(lower_a) + abs(upper_a) <= 0.0)):
             raise self._refusal("lower_a below upper_a, or both 0", lower_a=lower_a, upper_a=upper_a)
-        unlimited_a = 1.0 if abs(lower_a) + abs(upper_a) <= 0.0 else 0.0  # a: no limit
+        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: no limit
         effective_lower_a = lower_a
         effective_upper_a = upper_a
         tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
-        lowest_a = -1e12 if unlimited_a > 0.0 else effective_lower_a - tolerance_a
-        highest_a = 1e12 if unlimited_a > 0.0 else effective_upper_a + tolerance_a
+        lowest_a = -1e12 if unlimited_a else effective_lower_a - tolerance_a
+        highest_a = 1e12 if unlimited_a else effective_upper_a + tolerance_a
         # one value inside the limits
-        single_a = (
-            1.0
-            if (unlimited_a <= 0.0) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
-            else 0.0
-        )
+        single_a = (not unlimited_a) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
         mid_a = 0.5*effective_lower_a + 0.5*effective_upper_a
         if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
             raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
-        unlimited_b = 1.0 if abs(lower_b) + abs(upper_b) <= 0.0 else 0.0  # b: no limit
+        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: no limit
         effective_lower_b = lower_b
         effective_upper_b = upper_b
         tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
-        lowest_b = -1e12 if unlimited_b > 0.0 else effective_lower_b - tolerance_b
-        highest_b = 1e12 if unlimited_b > 0.0 else effective_upper_b + tolerance_b
+        lowest_b = -1e12 if unlimited_b else effective_lower_b - tolerance_b
+        highest_b = 1e12 if unlimited_b else effective_upper_b + tolerance_b
         # one value inside the limits
-        single_b = (
-            1.0
-            if (unlimited_b <= 0.0) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
-            else 0.0
-        )
+        single_b = (not unlimited_b) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
         mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
         if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
             raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
-        unlimited_c = 1.0 if abs(lower_c) + abs(upper_c) <= 0.0 else 0.0  # c: no limit
+        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: no limit
         effective_lower_c = lower_c
         effective_upper_c = upper_c
         tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
-        lowest_c = -1e12 if unlimited_c > 0.0 else effective_lower_c - tolerance_c
-        highest_c = 1e12 if unlimited_c > 0.0 else effective_upper_c + tolerance_c
+        lowest_c = -1e12 if unlimited_c else effective_lower_c - tolerance_c
+        highest_c = 1e12 if unlimited_c else effective_upper_c + tolerance_c
         # one value inside the limits
-        single_c = (
-            1.0
-            if (unlimited_c <= 0.0) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
-            else 0.0
-        )
+        single_c = (not unlimited_c) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
         machine_scale = 1.0  # a length of the machine
         return Constants(
@@ -354,7 +355,7 @@ class Wrist3(OrientationKinematics):
         return ((r11_at_c, r12_at_c, r13_at_b), (r21_at_c, r22_at_c, r23_at_b), (r31_at_c, r32_at_c, cos_b))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
@@ -377,27 +378,27 @@ class Wrist3(OrientationKinematics):
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
         # c: polar angle in the r31 and r32 equations; its reference where it is free
         if radius_c > 1e-11:
-            direction_x_c = r31*sigma_hand
-            direction_y_c = -r32*sigma_hand
+            direction_x_c = sigma_hand*r31
+            direction_y_c = -sigma_hand*r32
         else:
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
         scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
         direction_y_a = -direction_x_c*r12 - direction_y_c*r11
-        open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
-        near_a = (360.0*turn_a - 360.0 if turn_a > 0.0 else 360.0*turn_a) if abs(turn_a) > 0.0 else open_a
+        open_a = mid_a if single_a else ref_a  # A: where its turn is open
+        near_a = 360.0*(turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
         axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0)/DEGREE  # A: its turn
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
-        c_radius_of_b = radius_c*sigma_hand
-        open_b = mid_b if single_b > 0.0 else ref_b  # B: where its turn is open
-        near_b = (360.0*turn_b - 360.0 if turn_b > 0.0 else 360.0*turn_b) if abs(turn_b) > 0.0 else open_b
+        c_radius_of_b = sigma_hand*radius_c
+        open_b = mid_b if single_b else ref_b  # B: where its turn is open
+        near_b = 360.0*(turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
         axis_b = offset_b + arctan2(c_radius_of_b, r33 + 0.0)/DEGREE  # B: its turn
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
-        open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
-        near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
+        open_c = mid_c if single_c else ref_c  # C: where its turn is open
+        near_c = 360.0*(turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
         axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
@@ -549,12 +550,12 @@ class Wrist3(OrientationKinematics):
         solve = self._all_trusted  # looked up faster by itself than in a call
         return solve(frame, reference)
 
-    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         return solve(frame, signs, reference)
 
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
 

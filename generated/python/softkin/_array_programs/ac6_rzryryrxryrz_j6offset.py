@@ -12,6 +12,8 @@ from softkin._array import (
     Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     advanced,
@@ -20,6 +22,7 @@ from softkin._array import (
     elsewhere,
     initial,
     nearest_period,
+    opposite,
     passed,
     require,
     root,
@@ -73,7 +76,7 @@ class ArrayPrograms(Programs):
         slope_wrist_y_tried = goal_r22*j6_offset_x*slope_sin_q6_tried - goal_r21*j6_offset_x*slope_cos_q6_tried
 
         def elsewhere_cos_q1_tried(free_a1: Real, freed: Real, freed_angle: Real) -> Reals:
-            chosen_q1 = select((freed > -0.5) & (freed < 0.5), freed_angle, free_a1)  # q1, where it is free
+            chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1, where it is free
             cos_q1_tried = cos(chosen_q1)  # its reference where it is free
             sin_q1_tried = sin(chosen_q1)
             slope_cos_q1_tried = 0.0
@@ -106,12 +109,12 @@ class ArrayPrograms(Programs):
         cos_q1_tried = along_q1_tried/length_q1_tried  # its reference where it is free
         across_q1_tried = wanted_shoulder*wrist_y_tried
         sin_q1_tried = across_q1_tried/length_q1_tried
-        slope_along_q1_tried = slope_wrist_x_tried*wanted_shoulder
+        slope_along_q1_tried = wanted_shoulder*slope_wrist_x_tried
         slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)/length_q1_tried
-        slope_across_q1_tried = slope_wrist_y_tried*wanted_shoulder
+        slope_across_q1_tried = wanted_shoulder*slope_wrist_y_tried
         slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)/length_q1_tried
         cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried = elsewhere(
-            (distance_q1_tried > 1e-11*machine_scale) & ((freed > 0.5) | (freed < -0.5)),
+            (freed != 0) & (distance_q1_tried > 1e-11*machine_scale),
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
             elsewhere_cos_q1_tried,
             (free_a1, freed, freed_angle),
@@ -169,9 +172,10 @@ class ArrayPrograms(Programs):
             (),
         )
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/sum_q3_tried
+        sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
-        sin_swing_q3_tried = 2.0*root_of_sin_swing_q3_tried*side*wanted_elbow/sum_q3_tried
+        sin_swing_q3_tried = 2.0*root_of_sin_swing_q3_tried*sign_elbow_tried/sum_q3_tried
         cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
         sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
         slope_cos_swing_q3_tried = (
@@ -190,7 +194,7 @@ class ArrayPrograms(Programs):
             0.0,
         )
         slope_sin_swing_q3_tried = (
-            (2.0*side*slope_root_of_sin_swing_q3_tried*wanted_elbow - slope_sum_q3_tried*sin_swing_q3_tried)
+            (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_sum_q3_tried*sin_swing_q3_tried)
             /sum_q3_tried
         )
         slope_cos_q3_tried = (
@@ -201,7 +205,7 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_cos_q2_tried(free_a2: Real, freed: Real, freed_angle: Real) -> Reals:
-            chosen_q2 = select((freed > 0.5) & (freed < 1.5), freed_angle, free_a2)  # q2, where it is free
+            chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2, where it is free
             cos_q2_tried = cos(chosen_q2)  # its reference where it is free
             sin_q2_tried = sin(chosen_q2)
             slope_cos_q2_tried = 0.0
@@ -254,7 +258,7 @@ class ArrayPrograms(Programs):
         slope_cos_q2_tried = (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)/length_q2_tried
         slope_sin_q2_tried = (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)/length_q2_tried
         cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
-            (reach_tried > 1e-11*machine_scale) & ((freed > 1.5) | (freed < 0.5)),
+            (freed != 1) & (reach_tried > 1e-11*machine_scale),
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
             elsewhere_cos_q2_tried,
             (free_a2, freed, freed_angle),
@@ -322,7 +326,7 @@ class ArrayPrograms(Programs):
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
 
         def elsewhere_cos_q1_tried(free_a1: Real, freed: Real, freed_angle: Real) -> Reals:
-            chosen_q1 = select((freed > -0.5) & (freed < 0.5), freed_angle, free_a1)  # q1, where it is free
+            chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1, where it is free
             cos_q1_tried = cos(chosen_q1)  # its reference where it is free
             sin_q1_tried = sin(chosen_q1)
             return (cos_q1_tried, sin_q1_tried)
@@ -333,7 +337,7 @@ class ArrayPrograms(Programs):
         across_q1_tried = wanted_shoulder*wrist_y_tried
         sin_q1_tried = across_q1_tried/length_q1_tried
         cos_q1_tried, sin_q1_tried = elsewhere(
-            (distance_q1_tried > 1e-11*machine_scale) & ((freed > 0.5) | (freed < -0.5)),
+            (freed != 0) & (distance_q1_tried > 1e-11*machine_scale),
             (cos_q1_tried, sin_q1_tried),
             elsewhere_cos_q1_tried,
             (free_a1, freed, freed_angle),
@@ -351,13 +355,14 @@ class ArrayPrograms(Programs):
         both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         sum_q3_tried = select(both_q3_tried > 0.0, both_q3_tried, 1.0)
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/sum_q3_tried
+        sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
-        sin_swing_q3_tried = 2.0*root(sine_square_q3_tried)*side*wanted_elbow/sum_q3_tried
+        sin_swing_q3_tried = 2.0*root(sine_square_q3_tried)*sign_elbow_tried/sum_q3_tried
         cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
         sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
 
         def elsewhere_cos_q2_tried(free_a2: Real, freed: Real, freed_angle: Real) -> Reals:
-            chosen_q2 = select((freed > 0.5) & (freed < 1.5), freed_angle, free_a2)  # q2, where it is free
+            chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2, where it is free
             cos_q2_tried = cos(chosen_q2)  # its reference where it is free
             sin_q2_tried = sin(chosen_q2)
             return (cos_q2_tried, sin_q2_tried)
@@ -378,7 +383,7 @@ class ArrayPrograms(Programs):
         cos_q2_tried = along_q2_tried/length_q2_tried  # its reference where it is free
         sin_q2_tried = across_q2_tried/length_q2_tried
         cos_q2_tried, sin_q2_tried = elsewhere(
-            (reach_tried > 1e-11*machine_scale) & ((freed > 1.5) | (freed < 0.5)),
+            (freed != 1) & (reach_tried > 1e-11*machine_scale),
             (cos_q2_tried, sin_q2_tried),
             elsewhere_cos_q2_tried,
             (free_a2, freed, freed_angle),
@@ -408,7 +413,7 @@ class ArrayPrograms(Programs):
             atan2(r32_from_q123_before_q6_tried, r22_from_q123_before_q6_tried),
             atan2(r13_from_q123_tried, r33_from_q1234_tried),
             atan2(sin_q6_tried, cos_q6_tried),
-            0.0,
+            0,
         )
         for _ in range(4):
             cos_q1 = cos(q1)
@@ -583,21 +588,21 @@ class ArrayPrograms(Programs):
             size = (
                 step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4 + step_q5*step_q5 + step_q6*step_q6
             )
-            taken = select(size <= error, 1.0, 0.0)  # whether the error becomes smaller
-            done = (error <= 1e-14) | (passes > 2.5) | (taken < 0.5)
+            taken = size <= error  # whether the error becomes smaller
+            done = (opposite(taken)) | (error <= 1e-14) | (passes >= 3)
             if settled(done, status):
                 break
             q1, q2, q3, q4, q5, q6, passes = advanced(
                 done,
                 (q1, q2, q3, q4, q5, q6, passes),
                 (
-                    q1 + step_q1*taken,
-                    q2 + step_q2*taken,
-                    q3 + step_q3*taken,
-                    q4 + step_q4*taken,
-                    q5 + step_q5*taken,
-                    q6 + step_q6*taken,
-                    1.0 + passes,
+                    q1 + select(taken, step_q1, 0.0),
+                    q2 + select(taken, step_q2, 0.0),
+                    q3 + select(taken, step_q3, 0.0),
+                    q4 + select(taken, step_q4, 0.0),
+                    q5 + select(taken, step_q5, 0.0),
+                    q6 + select(taken, step_q6, 0.0),
+                    1 + passes,
                 ),
             )
         require(status, done, Status.UNREACHABLE)
@@ -613,18 +618,14 @@ class ArrayPrograms(Programs):
             ),
             (),
         )
-        fits = select(
-            (
-                (error <= 1e-10) & (select(absolute(j6_offset_x) > 0.0, sin(q4), cos(q5))*wanted_wrist >= -1e-6)
-                & ((a3*sin(q3) + cos(q3)*d4)*wanted_elbow/machine_scale >= -1e-6)
-                & (
-                    -0.5*determinant*machine_scale*machine_scale*wanted_crossing*wanted_elbow*wanted_shoulder
-                    /(sqrt(a3*a3 + d4*d4)*a2) >= -1e-6
-                )
-                & ((a1 + a2*sin(q2) + a3*sin(q2 + q3) + cos(q2 + q3)*d4)*wanted_shoulder/machine_scale >= -1e-6)
-            ),
-            1.0,
-            0.0,
+        fits = (
+            (error <= 1e-10) & (select(absolute(j6_offset_x) > 0.0, sin(q4), cos(q5))*wanted_wrist >= -1e-6)
+            & (wanted_elbow*(a3*sin(q3) + cos(q3)*d4)/machine_scale >= -1e-6)
+            & (wanted_shoulder*(a1 + a2*sin(q2) + a3*sin(q2 + q3) + cos(q2 + q3)*d4)/machine_scale >= -1e-6)
+            & (
+                -0.5*(wanted_crossing*wanted_elbow*wanted_shoulder)*determinant*machine_scale*machine_scale
+                /(sqrt(a3*a3 + d4*d4)*a2) >= -1e-6
+            )
         )
         return (fits, q1, q2, q3, q4, q5, q6)
 
@@ -640,7 +641,7 @@ class ArrayPrograms(Programs):
             self.try_joint,
             self.finish_root,
             start,
-            looked_for > 0.5,
+            looked_for,
             status,
             (
                 free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
@@ -749,14 +750,10 @@ class ArrayPrograms(Programs):
         sin_q3_tried = sin(q3)
         cos_q3_tried = cos(q3)
         margin_elbow_tried = (a3*sin_q3_tried + d4*cos_q3_tried)/effective_q3_tried
-        branch_shoulder: Real
-        branch_elbow: Real
-        branch_wrist: Real
-        if searched > 0.5:
-            branch_shoulder = margin_shoulder_tried
-            branch_elbow = margin_elbow_tried
-            branch_wrist = select(absolute(j6_offset_x) > 0.0, sin_q4, cos_q5)/machine_scale
-        else:
+
+        def elsewhere_branch_shoulder(
+            cos_q1: Real, cos_q5: Real, q3: Real, r13_at_q5: Real, r23_at_q5: Real, sin_q1: Real, x: Real, y: Real,
+        ) -> Reals:
             wrist_x_closed = x - d6*r13_at_q5  # the point that the last joints turn about
             wrist_y_closed = y - d6*r23_at_q5
             margin_shoulder_closed = (wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)/machine_scale
@@ -766,6 +763,17 @@ class ArrayPrograms(Programs):
             margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_tried
             branch_elbow = margin_elbow_closed
             branch_wrist = cos_q5
+            return (branch_shoulder, branch_elbow, branch_wrist)
+
+        branch_shoulder = margin_shoulder_tried
+        branch_elbow = margin_elbow_tried
+        branch_wrist = select(absolute(j6_offset_x) > 0.0, sin_q4, cos_q5)/machine_scale
+        branch_shoulder, branch_elbow, branch_wrist = elsewhere(
+            searched,
+            (branch_shoulder, branch_elbow, branch_wrist),
+            elsewhere_branch_shoulder,
+            (cos_q1, cos_q5, q3, r13_at_q5, r23_at_q5, sin_q1, x, y),
+        )
         # of the Jacobian, its positions in lengths of the machine
         (determinant,) = solve(
             (
@@ -798,7 +806,7 @@ class ArrayPrograms(Programs):
             (),
         )
         branch_crossing = select(
-            searched > 0.5,
+            searched,
             (
                 -0.5*select(margin_elbow_tried >= 0.0, 1.0, -1.0)*select(margin_shoulder_tried >= 0.0, 1.0, -1.0)
                 *determinant*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
@@ -819,7 +827,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -872,7 +880,7 @@ class ArrayPrograms(Programs):
         # q1: of the point from its axis
         distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
         # how far ahead of the axis the point is; negative: behind
-        ahead_q1_closed = distance_q1_closed*sigma_shoulder
+        ahead_q1_closed = sigma_shoulder*distance_q1_closed
         wrist_x_from_q1_closed = ahead_q1_closed - a1  # what the unknown links must span
         wrist_z_closed = z - d6*r33
         wrist_z_from_q1_closed = wrist_z_closed - d1  # what the unknown links must span
@@ -887,11 +895,11 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(
             status,
-            (searched > 0.5) | (sine_square_q3_closed >= -1e-12*swing_scale_q3_tried*swing_scale_q3_tried),
+            searched | (sine_square_q3_closed >= -1e-12*swing_scale_q3_tried*swing_scale_q3_tried),
             Status.UNREACHABLE,
         )
         # without the offset there is no second crossing
-        require(status, (searched > 0.5) | (sigma_crossing > 0.0), Status.UNREACHABLE)
+        require(status, searched | (sigma_crossing > 0), Status.UNREACHABLE)
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         free_a2 = (ref_a2 - offset_a2)*DEGREE
         free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -905,21 +913,15 @@ class ArrayPrograms(Programs):
         )
         found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
         # q6: the search along it finds no root of this branch
-        require(status, (found_ > 0.5) | (searched < 0.5), Status.UNREACHABLE)
-        q1: Real
-        q2: Real
-        q3: Real
-        q4: Real
-        q5: Real
-        q6: Real
-        if searched > 0.5:
-            q1 = found_q1
-            q2 = found_q2
-            q3 = found_q3
-            q4 = found_q4
-            q5 = found_q5
-            q6 = found_q6
-        else:
+        require(status, found_ | (opposite(searched)), Status.UNREACHABLE)
+
+        def elsewhere_q1(
+            distance_q1_closed: Real, free_a1: Real, free_a2: Real, one_less_cos_q3_closed: Real,
+            one_plus_cos_q3_closed: Real, r11: Real, r12: Real, r13: Real, r21: Real, r22: Real, r23: Real, r31: Real,
+            r32: Real, r33: Real, reach_closed: Real, ref_a4: Real, sigma_elbow: Real, sigma_shoulder: Real,
+            sigma_wrist: Real, sine_square_q3_closed: Real, wrist_x_closed: Real, wrist_x_from_q1_closed: Real,
+            wrist_y_closed: Real, wrist_z_from_q1_closed: Real,
+        ) -> Reals:
 
             def elsewhere_cos_q1_closed(free_a1: Real) -> Reals:
                 cos_q1_closed = cos(free_a1)  # its reference where it is free
@@ -986,8 +988,8 @@ class ArrayPrograms(Programs):
                 return (direction_x_q4_closed, direction_y_q4_closed)
 
             # q4: polar angle in the r33 and r23 equations; its reference where it is free
-            direction_x_q4_closed = r33_from_q123_closed*sigma_wrist
-            direction_y_q4_closed = -r23_from_q1_closed*sigma_wrist
+            direction_x_q4_closed = sigma_wrist*r33_from_q123_closed
+            direction_y_q4_closed = -sigma_wrist*r23_from_q1_closed
             direction_x_q4_closed, direction_y_q4_closed = elsewhere(
                 radius_q4_closed > 1e-11,
                 (direction_x_q4_closed, direction_y_q4_closed),
@@ -996,7 +998,7 @@ class ArrayPrograms(Programs):
             )
             q4 = atan2(direction_y_q4_closed, direction_x_q4_closed)
             r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
-            q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
+            q4_radius_of_q5_closed = sigma_wrist*radius_q4_closed
             q5 = atan2(r13_from_q123_closed, q4_radius_of_q5_closed)
             r21_from_q1_closed = r21*cos_q1_closed - r11*sin_q1_closed
             r11_from_q1_closed = r11*cos_q1_closed + r21*sin_q1_closed
@@ -1011,47 +1013,41 @@ class ArrayPrograms(Programs):
                 direction_x_q4_closed*r22_from_q1_closed + direction_y_q4_closed*r32_from_q123_closed
             )
             q6 = atan2(scaled_r21_from_q1234_closed, scaled_r22_from_q1234_closed)
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
+            return (q1, q2, q3, q4, q5, q6)
+
+        q1 = found_q1
+        q2 = found_q2
+        q3 = found_q3
+        q4 = found_q4
+        q5 = found_q5
+        q6 = found_q6
+        q1, q2, q3, q4, q5, q6 = elsewhere(
+            searched,
+            (q1, q2, q3, q4, q5, q6),
+            elsewhere_q1,
+            (
+                distance_q1_closed, free_a1, free_a2, one_less_cos_q3_closed, one_plus_cos_q3_closed, r11, r12, r13,
+                r21, r22, r23, r31, r32, r33, reach_closed, ref_a4, sigma_elbow, sigma_shoulder, sigma_wrist,
+                sine_square_q3_closed, wrist_x_closed, wrist_x_from_q1_closed, wrist_y_closed, wrist_z_from_q1_closed,
+            ),
         )
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + q1/DEGREE, near_a1)  # A1: its turn
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + q2/DEGREE, near_a2)  # A2: its turn
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(offset_a3 + q3/DEGREE, near_a3)  # A3: its turn
-        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(
-            absolute(turn_a4) > 0.0,
-            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
-            open_a4,
-        )
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         axis_a4 = nearest_period(offset_a4 + q4/DEGREE, near_a4)  # A4: its turn
-        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(
-            absolute(turn_a5) > 0.0,
-            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
-            open_a5,
-        )
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         axis_a5 = nearest_period(offset_a5 + q5/DEGREE, near_a5)  # A5: its turn
-        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(
-            absolute(turn_a6) > 0.0,
-            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
-            open_a6,
-        )
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         axis_a6 = nearest_period(offset_a6 + q6/DEGREE, near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 

@@ -13,6 +13,8 @@ from softkin._array import (
     Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     atan2,
@@ -139,7 +141,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -226,12 +228,12 @@ class ArrayPrograms(Programs):
                 r21_from_q1_before_q1_for_q3*r21_from_q1_before_q1_for_q3
                 + r22_from_q1_before_q1_for_q3*r22_from_q1_before_q1_for_q3
             )
-            q6_radius_of_q5_before_q1_for_q3 = radius_q6_before_q1_for_q3*sigma_wrist
+            q6_radius_of_q5_before_q1_for_q3 = sigma_wrist*radius_q6_before_q1_for_q3
             cos_q5_before_q1_for_q3 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3
             r21_from_q1_rate_q1_for_q3 = -r11*cos_q1_before_q1_for_q3 - r21*sin_q1_before_q1_for_q3
             r22_from_q1_rate_q1_for_q3 = -r12*cos_q1_before_q1_for_q3 - r22*sin_q1_before_q1_for_q3
-            along_q6_rate_q1_for_q3 = -r21_from_q1_rate_q1_for_q3*sigma_wrist
-            across_q6_rate_q1_for_q3 = r22_from_q1_rate_q1_for_q3*sigma_wrist
+            along_q6_rate_q1_for_q3 = -sigma_wrist*r21_from_q1_rate_q1_for_q3
+            across_q6_rate_q1_for_q3 = sigma_wrist*r22_from_q1_rate_q1_for_q3
 
             def elsewhere_cos_q6_before_q1_for_q3(
                 free_a6: Real, r21_from_q1_before_q1_for_q3: Real, r21_from_q1_rate_q1_for_q3: Real,
@@ -265,9 +267,9 @@ class ArrayPrograms(Programs):
                     sin_q6_rate_q1_for_q3,
                 )
 
-            along_q6_before_q1_for_q3 = -r21_from_q1_before_q1_for_q3*sigma_wrist
+            along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
             cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
-            across_q6_before_q1_for_q3 = r22_from_q1_before_q1_for_q3*sigma_wrist
+            across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
             sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
             radius_q6_rate_q1_for_q3 = (
                 0.5
@@ -329,7 +331,7 @@ class ArrayPrograms(Programs):
                 wrist_y_from_q1_before_q1_for_q3: Real, wrist_z: Real,
             ) -> Reals:
                 r23_from_q1_rate_q1_for_q3 = -r13*cos_q1_before_q1_for_q3 - r23*sin_q1_before_q1_for_q3
-                q6_radius_of_q5_rate_q1_for_q3 = radius_q6_rate_q1_for_q3*sigma_wrist
+                q6_radius_of_q5_rate_q1_for_q3 = sigma_wrist*radius_q6_rate_q1_for_q3
                 r21_from_q1_before_q6_rate_q1_for_q3 = r31*cos_q6_rate_q1_for_q3 - r32*sin_q6_rate_q1_for_q3
                 r21_from_q1_before_q56_rate_q1_for_q3 = (
                     r21_from_q1_before_q6_rate_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_rate_q1_for_q3*r33
@@ -343,6 +345,50 @@ class ArrayPrograms(Programs):
                     2.0*wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
                     + 2.0*wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
                 )
+
+                def elsewhere_turn_q1_for_q3() -> Reals:
+                    turn_q1_for_q3 = 1.0  # to the boundary of the later step
+                    return (turn_q1_for_q3,)
+
+                excess_q1_for_q3 = select(
+                    value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3,
+                )
+                turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
+                (turn_q1_for_q3,) = elsewhere(
+                    absolute(rate_q1_for_q3) > 1e-12*size_q1_for_q3,
+                    (turn_q1_for_q3,),
+                    elsewhere_turn_q1_for_q3,
+                    (),
+                )
+                # whether it follows q6
+                follows_q1_for_q3 = (
+                    (turn_q1_for_q3*turn_q1_for_q3 > 1e-12)
+                    | (
+                        (across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3 + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3)
+                        *turn_q1_for_q3*turn_q1_for_q3 > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                    )
+                )
+
+                def elsewhere_best_cost_q1_for_q3(
+                    ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real,
+                    turn_q1_for_q3: Real, wrist_x: Real, wrist_y: Real,
+                ) -> Reals:
+                    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                    turned_cos_q1_for_q3 = (
+                        (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                    )
+                    turned_sin_q1_for_q3 = (
+                        (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                    )
+                    # what is left of its own equation
+                    turned_cost_q1_for_q3 = absolute(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
+                    best_cost_q1_for_q3 = turned_cost_q1_for_q3
+                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)/turned_length_q1_for_q3
+                    best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
+                    best_cos_q1_for_q3 = turned_cos_q1_for_q3
+                    best_sin_q1_for_q3 = turned_sin_q1_for_q3
+                    return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
+
                 along_q6_q1_for_q3 = (
                     2.0*d5*r32*wrist_z - 2.0*d1*d5*r32 - 2.0*ahead_q1_before_q1_for_q3*d5*r31*cos_q5_before_q1_for_q3
                 )
@@ -401,8 +447,8 @@ class ArrayPrograms(Programs):
                 )
                 near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
                 near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
-                near_q_q1_for_q3 = near_cos_q6_q1_for_q3*r12*sigma_wrist + near_sin_q6_q1_for_q3*r11*sigma_wrist
-                near_p_q1_for_q3 = -near_cos_q6_q1_for_q3*r22*sigma_wrist - near_sin_q6_q1_for_q3*r21*sigma_wrist
+                near_q_q1_for_q3 = sigma_wrist*near_cos_q6_q1_for_q3*r12 + sigma_wrist*near_sin_q6_q1_for_q3*r11
+                near_p_q1_for_q3 = -sigma_wrist*near_cos_q6_q1_for_q3*r22 - sigma_wrist*near_sin_q6_q1_for_q3*r21
                 near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
 
                 def elsewhere_near_cos_q1_for_q3(cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real) -> Reals:
@@ -411,8 +457,8 @@ class ArrayPrograms(Programs):
                     return (near_cos_q1_for_q3, near_sin_q1_for_q3)
 
                 near_along_q1_for_q3 = (
-                    (near_cos_q6_q1_for_q3*r11*sigma_wrist - near_sin_q6_q1_for_q3*r12*sigma_wrist)*near_p_q1_for_q3
-                    - (near_sin_q6_q1_for_q3*r22*sigma_wrist - near_cos_q6_q1_for_q3*r21*sigma_wrist)*near_q_q1_for_q3
+                    (sigma_wrist*near_cos_q6_q1_for_q3*r11 - sigma_wrist*near_sin_q6_q1_for_q3*r12)*near_p_q1_for_q3
+                    - (sigma_wrist*near_sin_q6_q1_for_q3*r22 - sigma_wrist*near_cos_q6_q1_for_q3*r21)*near_q_q1_for_q3
                 )
                 # of two opposite ways
                 near_towards_q1_for_q3 = select(
@@ -440,8 +486,8 @@ class ArrayPrograms(Programs):
                 mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
                 mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
                 mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
-                mirrored_q_q1_for_q3 = mirrored_cos_q6_q1_for_q3*r12*sigma_wrist + mirrored_sin_q6_q1_for_q3*r11*sigma_wrist
-                mirrored_p_q1_for_q3 = -mirrored_cos_q6_q1_for_q3*r22*sigma_wrist - mirrored_sin_q6_q1_for_q3*r21*sigma_wrist
+                mirrored_q_q1_for_q3 = sigma_wrist*mirrored_cos_q6_q1_for_q3*r12 + sigma_wrist*mirrored_sin_q6_q1_for_q3*r11
+                mirrored_p_q1_for_q3 = -sigma_wrist*mirrored_cos_q6_q1_for_q3*r22 - sigma_wrist*mirrored_sin_q6_q1_for_q3*r21
                 mirrored_radius_q1_for_q3 = sqrt(
                     mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
                 )
@@ -453,10 +499,10 @@ class ArrayPrograms(Programs):
 
                 mirrored_along_q1_for_q3 = (
                     (
-                        mirrored_cos_q6_q1_for_q3*r11*sigma_wrist - mirrored_sin_q6_q1_for_q3*r12*sigma_wrist
+                        sigma_wrist*mirrored_cos_q6_q1_for_q3*r11 - sigma_wrist*mirrored_sin_q6_q1_for_q3*r12
                     )*mirrored_p_q1_for_q3
                     - (
-                        mirrored_sin_q6_q1_for_q3*r22*sigma_wrist - mirrored_cos_q6_q1_for_q3*r21*sigma_wrist
+                        sigma_wrist*mirrored_sin_q6_q1_for_q3*r22 - sigma_wrist*mirrored_cos_q6_q1_for_q3*r21
                     )*mirrored_q_q1_for_q3
                 )
                 # of two opposite ways
@@ -501,70 +547,19 @@ class ArrayPrograms(Programs):
                     elsewhere_swept_cost_q1_for_q3_2,
                     (near_cos_q1_for_q3, near_sin_q1_for_q3),
                 )
-                swept_ahead_q1_for_q3 = swept_cos_q1_for_q3*wrist_x + swept_sin_q1_for_q3*wrist_y
-
-                def elsewhere_best_cost_q1_for_q3_2(
-                    swept_ahead_q1_for_q3: Real, swept_cos_q1_for_q3: Real, swept_cost_q1_for_q3: Real,
-                    swept_sin_q1_for_q3: Real,
-                ) -> Reals:
-                    best_cost_q1_for_q3 = swept_cost_q1_for_q3
-                    best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
-                    best_cos_q1_for_q3 = swept_cos_q1_for_q3
-                    best_sin_q1_for_q3 = swept_sin_q1_for_q3
-                    return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
-
-                excess_q1_for_q3 = select(
-                    value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3,
-                )
-                turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
-
-                def elsewhere_best_cost_q1_for_q3(
-                    ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real,
-                    turn_q1_for_q3: Real, wrist_x: Real, wrist_y: Real,
-                ) -> Reals:
-                    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-                    turned_cos_q1_for_q3 = (
-                        (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
-                    )
-                    turned_sin_q1_for_q3 = (
-                        (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
-                    )
-                    # what is left of its own equation
-                    turned_cost_q1_for_q3 = absolute(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
-                    best_cost_q1_for_q3 = turned_cost_q1_for_q3
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)/turned_length_q1_for_q3
-                    best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
-                    best_cos_q1_for_q3 = turned_cos_q1_for_q3
-                    best_sin_q1_for_q3 = turned_sin_q1_for_q3
-                    return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
-
                 best_cost_q1_for_q3 = swept_cost_q1_for_q3
+                swept_ahead_q1_for_q3 = swept_cos_q1_for_q3*wrist_x + swept_sin_q1_for_q3*wrist_y
                 best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
                 best_cos_q1_for_q3 = swept_cos_q1_for_q3
                 best_sin_q1_for_q3 = swept_sin_q1_for_q3
                 best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3 = elsewhere(
-                    (
-                        (turn_q1_for_q3*turn_q1_for_q3 > 1e-12)
-                        | (
-                            (
-                                across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3
-                                + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3
-                            )
-                            *turn_q1_for_q3*turn_q1_for_q3 > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
-                        )
-                    ),
+                    follows_q1_for_q3,
                     (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
                     elsewhere_best_cost_q1_for_q3,
                     (
                         ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, turn_q1_for_q3, wrist_x,
                         wrist_y,
                     ),
-                )
-                best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3 = elsewhere(
-                    absolute(rate_q1_for_q3) > 1e-12*size_q1_for_q3,
-                    (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
-                    elsewhere_best_cost_q1_for_q3_2,
-                    (swept_ahead_q1_for_q3, swept_cos_q1_for_q3, swept_cost_q1_for_q3, swept_sin_q1_for_q3),
                 )
 
                 def elsewhere_ahead_q1(
@@ -620,7 +615,7 @@ class ArrayPrograms(Programs):
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
-        q6_radius_of_q5 = radius_q6*sigma_wrist
+        q6_radius_of_q5 = sigma_wrist*radius_q6
 
         def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -628,9 +623,9 @@ class ArrayPrograms(Programs):
             sin_q6_before_q6_of_q3 = sin(free_a6)
             return (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3)
 
-        along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
+        along_q6 = -sigma_wrist*r21_from_q1  # q6: polar angle in the r31 and r32 equations
         cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
-        across_q6 = r22_from_q1*sigma_wrist
+        across_q6 = sigma_wrist*r22_from_q1
         sin_q6_before_q6_of_q3 = across_q6/radius_q6
         cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
             radius_q6 > 1e-11,
@@ -725,6 +720,7 @@ class ArrayPrograms(Programs):
                     )
                     *radius_q6
                 )
+                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11)
 
                 def elsewhere_cos_q6(cos_q6_after_q6_of_q3: Real, sin_q6_after_q6_of_q3: Real) -> Reals:
                     cos_q6 = cos_q6_after_q6_of_q3  # kept where the rest can be reached
@@ -734,7 +730,7 @@ class ArrayPrograms(Programs):
                 cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
                 sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
                 cos_q6, sin_q6 = elsewhere(
-                    (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11),
+                    stays_q6_of_q3,
                     (cos_q6, sin_q6),
                     elsewhere_cos_q6,
                     (cos_q6_after_q6_of_q3, sin_q6_after_q6_of_q3),
@@ -776,12 +772,8 @@ class ArrayPrograms(Programs):
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
         require(status, sine_square_q3 >= -1e-12*scale_q3*scale_q3, Status.UNREACHABLE)
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = select(absolute(both_q3) > 0.0, both_q3, 1.0)
@@ -807,43 +799,23 @@ class ArrayPrograms(Programs):
             (ref_a2,),
         )
         angle_q2 = atan2(direction_y_q2, direction_x_q2)
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + angle_q2/DEGREE, near_a2)  # A2: its turn
         angle_q3 = atan2(sin_q3, cos_q3)
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(offset_a3 + angle_q3/DEGREE, near_a3)  # A3: its turn
         angle_with_q4 = atan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(
-            absolute(turn_a4) > 0.0,
-            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
-            open_a4,
-        )
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4 = nearest_period(offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)/DEGREE, near_a4)
-        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(
-            absolute(turn_a5) > 0.0,
-            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
-            open_a5,
-        )
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         axis_a5 = nearest_period(offset_a5 + degrees(q6_radius_of_q5, cos_q5), near_a5)  # A5: its turn
-        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(
-            absolute(turn_a6) > 0.0,
-            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
-            open_a6,
-        )
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         axis_a6 = nearest_period(offset_a6 + degrees(sin_q6, cos_q6), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
@@ -879,7 +851,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -1110,8 +1082,7 @@ class ArrayPrograms(Programs):
 
             def elsewhere_turn_q1_for_q3_left_down() -> Reals:
                 turn_q1_for_q3_left_down = 1.0  # to the boundary of the later step
-                follows_q1_for_q3_left_down = 1.0  # 1 where it follows q6
-                return (turn_q1_for_q3_left_down, follows_q1_for_q3_left_down)
+                return (turn_q1_for_q3_left_down,)
 
             excess_q1_for_q3_left_down = select(
                 value_q1_for_q3_left_down > 0.0, value_q1_for_q3_left_down - size_q1_for_q3,
@@ -1119,25 +1090,9 @@ class ArrayPrograms(Programs):
             )
             # to the boundary of the later step
             turn_q1_for_q3_left_down = -excess_q1_for_q3_left_down/rate_q1_for_q3_left_down
-            # 1 where it follows q6
-            follows_q1_for_q3_left_down = select(
-                (
-                    (turn_q1_for_q3_left_down*turn_q1_for_q3_left_down > 1e-12)
-                    | (
-                        (
-                            r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
-                            + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
-                        )
-                        *turn_q1_for_q3_left_down*turn_q1_for_q3_left_down > 1e-12*radius_q6_before_q1_for_q3_left
-                        *radius_q6_before_q1_for_q3_left
-                    )
-                ),
-                1.0,
-                0.0,
-            )
-            turn_q1_for_q3_left_down, follows_q1_for_q3_left_down = elsewhere(
+            (turn_q1_for_q3_left_down,) = elsewhere(
                 absolute(rate_q1_for_q3_left_down) > 1e-12*size_q1_for_q3,
-                (turn_q1_for_q3_left_down, follows_q1_for_q3_left_down),
+                (turn_q1_for_q3_left_down,),
                 elsewhere_turn_q1_for_q3_left_down,
                 (),
             )
@@ -1153,6 +1108,18 @@ class ArrayPrograms(Programs):
             # what is left of its own equation
             turned_cost_q1_for_q3_left_down = absolute(
                 d4 + turned_cos_q1_for_q3_left_down*wrist_y - turned_sin_q1_for_q3_left_down*wrist_x
+            )
+            # whether it follows q6
+            follows_q1_for_q3_left_down = (
+                (turn_q1_for_q3_left_down*turn_q1_for_q3_left_down > 1e-12)
+                | (
+                    (
+                        r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
+                        + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                    )
+                    *turn_q1_for_q3_left_down*turn_q1_for_q3_left_down > 1e-12*radius_q6_before_q1_for_q3_left
+                    *radius_q6_before_q1_for_q3_left
+                )
             )
             along_q6_q1_for_q3_left = (
                 2.0*d5*r32*wrist_z + 2.0*ahead_q1_before_q1_for_q3_right*d5*r31*cos_q5_before_q1_for_q3_left
@@ -2089,7 +2056,7 @@ class ArrayPrograms(Programs):
                 best_cos_q1_for_q3_left_down = swept_cos_q1_for_q3_left_down
                 best_sin_q1_for_q3_left_down = swept_sin_q1_for_q3_left_down
                 found = elsewhere(
-                    follows_q1_for_q3_left_down > 0.0,
+                    follows_q1_for_q3_left_down,
                     (
                         best_cost_q1_for_q3_left_down, best_ahead_q1_for_q3_left_down, best_cos_q1_for_q3_left_down,
                         best_sin_q1_for_q3_left_down,
@@ -2170,26 +2137,34 @@ class ArrayPrograms(Programs):
                     2.0*wrist_x_from_q1_before_q1_for_q3_left_up*wrist_x_from_q1_rate_q1_for_q3_left_up
                     + 2.0*wrist_y_from_q1_before_q1_for_q3_left_up*wrist_y_from_q1_rate_q1_for_q3_left_up
                 )
-                swept_ahead_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up*wrist_x + swept_sin_q1_for_q3_left_up*wrist_y
 
-                def elsewhere_best_cost_q1_for_q3_left_up_2(
-                    swept_ahead_q1_for_q3_left_up: Real, swept_cos_q1_for_q3_left_up: Real,
-                    swept_cost_q1_for_q3_left_up: Real, swept_sin_q1_for_q3_left_up: Real,
-                ) -> Reals:
-                    best_cost_q1_for_q3_left_up = swept_cost_q1_for_q3_left_up
-                    best_ahead_q1_for_q3_left_up = swept_ahead_q1_for_q3_left_up
-                    best_cos_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up
-                    best_sin_q1_for_q3_left_up = swept_sin_q1_for_q3_left_up
-                    return (
-                        best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
-                        best_sin_q1_for_q3_left_up,
-                    )
+                def elsewhere_turn_q1_for_q3_left_up() -> Reals:
+                    turn_q1_for_q3_left_up = 1.0  # to the boundary of the later step
+                    return (turn_q1_for_q3_left_up,)
 
                 excess_q1_for_q3_left_up = select(
                     value_q1_for_q3_left_up > 0.0, value_q1_for_q3_left_up - size_q1_for_q3,
                     size_q1_for_q3 + value_q1_for_q3_left_up,
                 )
                 turn_q1_for_q3_left_up = -excess_q1_for_q3_left_up/rate_q1_for_q3_left_up  # to the boundary of the later step
+                (turn_q1_for_q3_left_up,) = elsewhere(
+                    absolute(rate_q1_for_q3_left_up) > 1e-12*size_q1_for_q3,
+                    (turn_q1_for_q3_left_up,),
+                    elsewhere_turn_q1_for_q3_left_up,
+                    (),
+                )
+                # whether it follows q6
+                follows_q1_for_q3_left_up = (
+                    (turn_q1_for_q3_left_up*turn_q1_for_q3_left_up > 1e-12)
+                    | (
+                        (
+                            r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
+                            + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                        )
+                        *turn_q1_for_q3_left_up*turn_q1_for_q3_left_up > 1e-12*radius_q6_before_q1_for_q3_left
+                        *radius_q6_before_q1_for_q3_left
+                    )
+                )
 
                 def elsewhere_best_cost_q1_for_q3_left_up(
                     ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
@@ -2222,21 +2197,12 @@ class ArrayPrograms(Programs):
                     )
 
                 best_cost_q1_for_q3_left_up = swept_cost_q1_for_q3_left_up
+                swept_ahead_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up*wrist_x + swept_sin_q1_for_q3_left_up*wrist_y
                 best_ahead_q1_for_q3_left_up = swept_ahead_q1_for_q3_left_up
                 best_cos_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up
                 best_sin_q1_for_q3_left_up = swept_sin_q1_for_q3_left_up
                 found = elsewhere(
-                    (
-                        (turn_q1_for_q3_left_up*turn_q1_for_q3_left_up > 1e-12)
-                        | (
-                            (
-                                r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
-                                + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
-                            )
-                            *turn_q1_for_q3_left_up*turn_q1_for_q3_left_up > 1e-12*radius_q6_before_q1_for_q3_left
-                            *radius_q6_before_q1_for_q3_left
-                        )
-                    ),
+                    follows_q1_for_q3_left_up,
                     (
                         best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
                         best_sin_q1_for_q3_left_up,
@@ -2245,22 +2211,6 @@ class ArrayPrograms(Programs):
                     (
                         ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left,
                         turn_q1_for_q3_left_up, wrist_x, wrist_y,
-                    ),
-                )
-                (
-                    best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
-                    best_sin_q1_for_q3_left_up,
-                ) = found
-                found = elsewhere(
-                    absolute(rate_q1_for_q3_left_up) > 1e-12*size_q1_for_q3,
-                    (
-                        best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
-                        best_sin_q1_for_q3_left_up,
-                    ),
-                    elsewhere_best_cost_q1_for_q3_left_up_2,
-                    (
-                        swept_ahead_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_cost_q1_for_q3_left_up,
-                        swept_sin_q1_for_q3_left_up,
                     ),
                 )
                 (
@@ -2409,22 +2359,10 @@ class ArrayPrograms(Programs):
                     2.0*wrist_x_from_q1_before_q1_for_q3_right_down*wrist_x_from_q1_rate_q1_for_q3_right_down
                     + 2.0*wrist_y_from_q1_before_q1_for_q3_right_down*wrist_y_from_q1_rate_q1_for_q3_right_down
                 )
-                swept_ahead_q1_for_q3_right_down = (
-                    swept_cos_q1_for_q3_right_down*wrist_x + swept_sin_q1_for_q3_right_down*wrist_y
-                )
 
-                def elsewhere_best_cost_q1_for_q3_right_down_2(
-                    swept_ahead_q1_for_q3_right_down: Real, swept_cos_q1_for_q3_right_down: Real,
-                    swept_cost_q1_for_q3_right_down: Real, swept_sin_q1_for_q3_right_down: Real,
-                ) -> Reals:
-                    best_cost_q1_for_q3_right_down = swept_cost_q1_for_q3_right_down
-                    best_ahead_q1_for_q3_right_down = swept_ahead_q1_for_q3_right_down
-                    best_cos_q1_for_q3_right_down = swept_cos_q1_for_q3_right_down
-                    best_sin_q1_for_q3_right_down = swept_sin_q1_for_q3_right_down
-                    return (
-                        best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
-                        best_sin_q1_for_q3_right_down,
-                    )
+                def elsewhere_turn_q1_for_q3_right_down() -> Reals:
+                    turn_q1_for_q3_right_down = 1.0  # to the boundary of the later step
+                    return (turn_q1_for_q3_right_down,)
 
                 excess_q1_for_q3_right_down = select(
                     value_q1_for_q3_right_down > 0.0, value_q1_for_q3_right_down - size_q1_for_q3,
@@ -2432,6 +2370,24 @@ class ArrayPrograms(Programs):
                 )
                 # to the boundary of the later step
                 turn_q1_for_q3_right_down = -excess_q1_for_q3_right_down/rate_q1_for_q3_right_down
+                (turn_q1_for_q3_right_down,) = elsewhere(
+                    absolute(rate_q1_for_q3_right_down) > 1e-12*size_q1_for_q3,
+                    (turn_q1_for_q3_right_down,),
+                    elsewhere_turn_q1_for_q3_right_down,
+                    (),
+                )
+                # whether it follows q6
+                follows_q1_for_q3_right_down = (
+                    (turn_q1_for_q3_right_down*turn_q1_for_q3_right_down > 1e-12)
+                    | (
+                        (
+                            r21_from_q1_rate_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
+                            + r22_from_q1_rate_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
+                        )
+                        *turn_q1_for_q3_right_down*turn_q1_for_q3_right_down > 1e-12*radius_q6_before_q1_for_q3_right
+                        *radius_q6_before_q1_for_q3_right
+                    )
+                )
 
                 def elsewhere_best_cost_q1_for_q3_right_down(
                     ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
@@ -2463,21 +2419,14 @@ class ArrayPrograms(Programs):
                     )
 
                 best_cost_q1_for_q3_right_down = swept_cost_q1_for_q3_right_down
+                swept_ahead_q1_for_q3_right_down = (
+                    swept_cos_q1_for_q3_right_down*wrist_x + swept_sin_q1_for_q3_right_down*wrist_y
+                )
                 best_ahead_q1_for_q3_right_down = swept_ahead_q1_for_q3_right_down
                 best_cos_q1_for_q3_right_down = swept_cos_q1_for_q3_right_down
                 best_sin_q1_for_q3_right_down = swept_sin_q1_for_q3_right_down
                 found = elsewhere(
-                    (
-                        (turn_q1_for_q3_right_down*turn_q1_for_q3_right_down > 1e-12)
-                        | (
-                            (
-                                r21_from_q1_rate_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
-                                + r22_from_q1_rate_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
-                            )
-                            *turn_q1_for_q3_right_down*turn_q1_for_q3_right_down > 1e-12*radius_q6_before_q1_for_q3_right
-                            *radius_q6_before_q1_for_q3_right
-                        )
-                    ),
+                    follows_q1_for_q3_right_down,
                     (
                         best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
                         best_sin_q1_for_q3_right_down,
@@ -2486,22 +2435,6 @@ class ArrayPrograms(Programs):
                     (
                         ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right,
                         turn_q1_for_q3_right_down, wrist_x, wrist_y,
-                    ),
-                )
-                (
-                    best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
-                    best_sin_q1_for_q3_right_down,
-                ) = found
-                found = elsewhere(
-                    absolute(rate_q1_for_q3_right_down) > 1e-12*size_q1_for_q3,
-                    (
-                        best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
-                        best_sin_q1_for_q3_right_down,
-                    ),
-                    elsewhere_best_cost_q1_for_q3_right_down_2,
-                    (
-                        swept_ahead_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_cost_q1_for_q3_right_down,
-                        swept_sin_q1_for_q3_right_down,
                     ),
                 )
                 (
@@ -2577,20 +2510,10 @@ class ArrayPrograms(Programs):
                     2.0*wrist_x_from_q1_before_q1_for_q3_right_up*wrist_x_from_q1_rate_q1_for_q3_right_up
                     + 2.0*wrist_y_from_q1_before_q1_for_q3_right_up*wrist_y_from_q1_rate_q1_for_q3_right_up
                 )
-                swept_ahead_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up*wrist_x + swept_sin_q1_for_q3_right_up*wrist_y
 
-                def elsewhere_best_cost_q1_for_q3_right_up_2(
-                    swept_ahead_q1_for_q3_right_up: Real, swept_cos_q1_for_q3_right_up: Real,
-                    swept_cost_q1_for_q3_right_up: Real, swept_sin_q1_for_q3_right_up: Real,
-                ) -> Reals:
-                    best_cost_q1_for_q3_right_up = swept_cost_q1_for_q3_right_up
-                    best_ahead_q1_for_q3_right_up = swept_ahead_q1_for_q3_right_up
-                    best_cos_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up
-                    best_sin_q1_for_q3_right_up = swept_sin_q1_for_q3_right_up
-                    return (
-                        best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
-                        best_sin_q1_for_q3_right_up,
-                    )
+                def elsewhere_turn_q1_for_q3_right_up() -> Reals:
+                    turn_q1_for_q3_right_up = 1.0  # to the boundary of the later step
+                    return (turn_q1_for_q3_right_up,)
 
                 excess_q1_for_q3_right_up = select(
                     value_q1_for_q3_right_up > 0.0, value_q1_for_q3_right_up - size_q1_for_q3,
@@ -2598,6 +2521,24 @@ class ArrayPrograms(Programs):
                 )
                 # to the boundary of the later step
                 turn_q1_for_q3_right_up = -excess_q1_for_q3_right_up/rate_q1_for_q3_right_up
+                (turn_q1_for_q3_right_up,) = elsewhere(
+                    absolute(rate_q1_for_q3_right_up) > 1e-12*size_q1_for_q3,
+                    (turn_q1_for_q3_right_up,),
+                    elsewhere_turn_q1_for_q3_right_up,
+                    (),
+                )
+                # whether it follows q6
+                follows_q1_for_q3_right_up = (
+                    (turn_q1_for_q3_right_up*turn_q1_for_q3_right_up > 1e-12)
+                    | (
+                        (
+                            r21_from_q1_rate_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
+                            + r22_from_q1_rate_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
+                        )
+                        *turn_q1_for_q3_right_up*turn_q1_for_q3_right_up > 1e-12*radius_q6_before_q1_for_q3_right
+                        *radius_q6_before_q1_for_q3_right
+                    )
+                )
 
                 def elsewhere_best_cost_q1_for_q3_right_up(
                     ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
@@ -2629,21 +2570,12 @@ class ArrayPrograms(Programs):
                     )
 
                 best_cost_q1_for_q3_right_up = swept_cost_q1_for_q3_right_up
+                swept_ahead_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up*wrist_x + swept_sin_q1_for_q3_right_up*wrist_y
                 best_ahead_q1_for_q3_right_up = swept_ahead_q1_for_q3_right_up
                 best_cos_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up
                 best_sin_q1_for_q3_right_up = swept_sin_q1_for_q3_right_up
                 found = elsewhere(
-                    (
-                        (turn_q1_for_q3_right_up*turn_q1_for_q3_right_up > 1e-12)
-                        | (
-                            (
-                                r21_from_q1_rate_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
-                                + r22_from_q1_rate_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
-                            )
-                            *turn_q1_for_q3_right_up*turn_q1_for_q3_right_up > 1e-12*radius_q6_before_q1_for_q3_right
-                            *radius_q6_before_q1_for_q3_right
-                        )
-                    ),
+                    follows_q1_for_q3_right_up,
                     (
                         best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
                         best_sin_q1_for_q3_right_up,
@@ -2652,22 +2584,6 @@ class ArrayPrograms(Programs):
                     (
                         ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right,
                         turn_q1_for_q3_right_up, wrist_x, wrist_y,
-                    ),
-                )
-                (
-                    best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
-                    best_sin_q1_for_q3_right_up,
-                ) = found
-                found = elsewhere(
-                    absolute(rate_q1_for_q3_right_up) > 1e-12*size_q1_for_q3,
-                    (
-                        best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
-                        best_sin_q1_for_q3_right_up,
-                    ),
-                    elsewhere_best_cost_q1_for_q3_right_up_2,
-                    (
-                        swept_ahead_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up, swept_cost_q1_for_q3_right_up,
-                        swept_sin_q1_for_q3_right_up,
                     ),
                 )
                 (
@@ -2894,6 +2810,7 @@ class ArrayPrograms(Programs):
                     )
                     *radius_q6_left_down
                 )
+                stays_q6_of_q3_left_down = (cost_q6_of_q3_left_down > 1e-12) & (radius_q6_left_down > 1e-11)
 
                 def elsewhere_cos_q6_left_down(
                     cos_q6_after_q6_of_q3_left_down: Real, sin_q6_after_q6_of_q3_left_down: Real,
@@ -2905,7 +2822,7 @@ class ArrayPrograms(Programs):
                 cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
                 sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
                 cos_q6_left_down, sin_q6_left_down = elsewhere(
-                    (cost_q6_of_q3_left_down > 1e-12) & (radius_q6_left_down > 1e-11),
+                    stays_q6_of_q3_left_down,
                     (cos_q6_left_down, sin_q6_left_down),
                     elsewhere_cos_q6_left_down,
                     (cos_q6_after_q6_of_q3_left_down, sin_q6_after_q6_of_q3_left_down),
@@ -2953,13 +2870,9 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_left_down = (a3 + reach_left_down - a2)*(a2 + reach_left_down - a3)
         # the square of sine times scale
         sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down
-        refusal_left_down = select(sine_square_q3_left_down >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        refusal_left_down = select(sine_square_q3_left_down >= -1e-12*scale_q3*scale_q3, 0, 3)  # q3: out of reach
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         # A1: its turn
         axis_a1_left_down = nearest_period(offset_a1 + degrees(sin_q1_left_down, cos_q1_left_down), near_a1)
         # twice the scale, with the rounding of its parts
@@ -3011,46 +2924,26 @@ class ArrayPrograms(Programs):
             direction_y_q2_left_down_down,
         ) = found
         angle_q2_left_up_down = atan2(direction_y_q2_left_up_down, direction_x_q2_left_up_down)
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2_left_up_down = nearest_period(offset_a2 + angle_q2_left_up_down/DEGREE, near_a2)  # A2: its turn
         angle_q3_left_up_down = atan2(sin_q3_left_up_down, cos_q3_left_down)
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3_left_up_down = nearest_period(offset_a3 + angle_q3_left_up_down/DEGREE, near_a3)  # A3: its turn
         angle_with_q4_left_down = atan2(r21_from_q1_before_q56_left_down, r22_from_q1_before_q6_left_down)
-        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(
-            absolute(turn_a4) > 0.0,
-            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
-            open_a4,
-        )
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_left_up_down = nearest_period(
             offset_a4 + (angle_with_q4_left_down - angle_q2_left_up_down - angle_q3_left_up_down)/DEGREE, near_a4,
         )
-        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(
-            absolute(turn_a5) > 0.0,
-            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
-            open_a5,
-        )
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         # A5: its turn
         axis_a5_left_down = nearest_period(offset_a5 + degrees(radius_q6_left_down, cos_q5_left_down), near_a5)
-        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(
-            absolute(turn_a6) > 0.0,
-            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
-            open_a6,
-        )
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         # A6: its turn
         axis_a6_left_down = nearest_period(offset_a6 + degrees(sin_q6_left_down, cos_q6_left_down), near_a6)
         cos_q5_left_up = r13*sin_q1_left_up - r23*cos_q1_left_up  # q5: linear pair in the q6 radius and r32 equations
@@ -3189,6 +3082,7 @@ class ArrayPrograms(Programs):
                     )
                     *radius_q6_left_up
                 )
+                stays_q6_of_q3_left_up = (cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left_up > 1e-11)
 
                 def elsewhere_cos_q6_left_up(
                     cos_q6_after_q6_of_q3_left_up: Real, sin_q6_after_q6_of_q3_left_up: Real,
@@ -3200,7 +3094,7 @@ class ArrayPrograms(Programs):
                 cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
                 sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
                 cos_q6_left_up, sin_q6_left_up = elsewhere(
-                    (cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left_up > 1e-11),
+                    stays_q6_of_q3_left_up,
                     (cos_q6_left_up, sin_q6_left_up),
                     elsewhere_cos_q6_left_up,
                     (cos_q6_after_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up),
@@ -3244,7 +3138,7 @@ class ArrayPrograms(Programs):
         one_less_cos_q3_left_up = (a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)  # 1 - cosine, times the scale
         one_plus_cos_q3_left_up = (a3 + reach_left_up - a2)*(a2 + reach_left_up - a3)  # 1 + cosine, times the scale
         sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up  # the square of sine times scale
-        refusal_left_up = select(sine_square_q3_left_up >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
+        refusal_left_up = select(sine_square_q3_left_up >= -1e-12*scale_q3*scale_q3, 0, 3)  # q3: out of reach
         axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)  # A1: its turn
         # twice the scale, with the rounding of its parts
         both_q3_left_up = one_less_cos_q3_left_up + one_plus_cos_q3_left_up
@@ -3471,6 +3365,7 @@ class ArrayPrograms(Programs):
                     )
                     *radius_q6_right_down
                 )
+                stays_q6_of_q3_right_down = (cost_q6_of_q3_right_down > 1e-12) & (radius_q6_right_down > 1e-11)
 
                 def elsewhere_cos_q6_right_down(
                     cos_q6_after_q6_of_q3_right_down: Real, sin_q6_after_q6_of_q3_right_down: Real,
@@ -3482,7 +3377,7 @@ class ArrayPrograms(Programs):
                 cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
                 sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
                 cos_q6_right_down, sin_q6_right_down = elsewhere(
-                    (cost_q6_of_q3_right_down > 1e-12) & (radius_q6_right_down > 1e-11),
+                    stays_q6_of_q3_right_down,
                     (cos_q6_right_down, sin_q6_right_down),
                     elsewhere_cos_q6_right_down,
                     (cos_q6_after_q6_of_q3_right_down, sin_q6_after_q6_of_q3_right_down),
@@ -3533,8 +3428,7 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_right_down = (a3 + reach_right_down - a2)*(a2 + reach_right_down - a3)
         # the square of sine times scale
         sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down
-        # q3: out of reach
-        refusal_right_down = select(sine_square_q3_right_down >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)
+        refusal_right_down = select(sine_square_q3_right_down >= -1e-12*scale_q3*scale_q3, 0, 3)  # q3: out of reach
         # A1: its turn
         axis_a1_right_down = nearest_period(offset_a1 + degrees(sin_q1_right_down, cos_q1_right_down), near_a1)
         # twice the scale, with the rounding of its parts
@@ -3744,6 +3638,7 @@ class ArrayPrograms(Programs):
                     )
                     *radius_q6_right_up
                 )
+                stays_q6_of_q3_right_up = (cost_q6_of_q3_right_up > 1e-12) & (radius_q6_right_up > 1e-11)
 
                 def elsewhere_cos_q6_right_up(
                     cos_q6_after_q6_of_q3_right_up: Real, sin_q6_after_q6_of_q3_right_up: Real,
@@ -3755,7 +3650,7 @@ class ArrayPrograms(Programs):
                 cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
                 sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
                 cos_q6_right_up, sin_q6_right_up = elsewhere(
-                    (cost_q6_of_q3_right_up > 1e-12) & (radius_q6_right_up > 1e-11),
+                    stays_q6_of_q3_right_up,
                     (cos_q6_right_up, sin_q6_right_up),
                     elsewhere_cos_q6_right_up,
                     (cos_q6_after_q6_of_q3_right_up, sin_q6_after_q6_of_q3_right_up),
@@ -3802,7 +3697,7 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_q3_right_up = (a3 + reach_right_up - a2)*(a2 + reach_right_up - a3)
         sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up  # the square of sine times scale
-        refusal_right_up = select(sine_square_q3_right_up >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
+        refusal_right_up = select(sine_square_q3_right_up >= -1e-12*scale_q3*scale_q3, 0, 3)  # q3: out of reach
         # A1: its turn
         axis_a1_right_up = nearest_period(offset_a1 + degrees(sin_q1_right_up, cos_q1_right_up), near_a1)
         # twice the scale, with the rounding of its parts

@@ -13,6 +13,8 @@ from softkin._array import (
     Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     cos,
@@ -97,7 +99,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -146,38 +148,26 @@ class ArrayPrograms(Programs):
             return (direction_x_a4, direction_y_a4)
 
         # a4: polar angle in the r33 and r13 equations; its reference where it is free
-        direction_x_a4 = r33*sigma_wrist
-        direction_y_a4 = r13*sigma_wrist
+        direction_x_a4 = sigma_wrist*r33
+        direction_y_a4 = sigma_wrist*r13
         direction_x_a4, direction_y_a4 = elsewhere(
             radius_a4 > 1e-11,
             (direction_x_a4, direction_y_a4),
             elsewhere_direction_x_a4,
             (ref_a4,),
         )
-        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(
-            absolute(turn_a4) > 0.0,
-            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
-            open_a4,
-        )
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         axis_a4 = nearest_period(offset_a4 + degrees(direction_y_a4, direction_x_a4), near_a4)  # A4: its turn
-        a4_radius_of_a5 = radius_a4*sigma_wrist
+        a4_radius_of_a5 = sigma_wrist*radius_a4
         sin_a5 = -r23
-        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(
-            absolute(turn_a5) > 0.0,
-            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
-            open_a5,
-        )
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         axis_a5 = nearest_period(offset_a5 + degrees(sin_a5, a4_radius_of_a5), near_a5)  # A5: its turn
         scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
         direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
-        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(
-            absolute(turn_a6) > 0.0,
-            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
-            open_a6,
-        )
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         axis_a6 = nearest_period(offset_a6 + degrees(direction_y_a6, scaled_r11_from_a4), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
@@ -213,7 +203,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -274,29 +264,17 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_a4_upright,
             (ref_a4,),
         )
-        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(
-            absolute(turn_a4) > 0.0,
-            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
-            open_a4,
-        )
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # A4: its turn
         axis_a4_upright = nearest_period(offset_a4 + degrees(direction_y_a4_upright, direction_x_a4_upright), near_a4)
-        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(
-            absolute(turn_a5) > 0.0,
-            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
-            open_a5,
-        )
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         axis_a5_upright = nearest_period(offset_a5 + degrees(-r23, radius_a4), near_a5)  # A5: its turn
         scaled_r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
         direction_y_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
-        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(
-            absolute(turn_a6) > 0.0,
-            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
-            open_a6,
-        )
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         # A6: its turn
         axis_a6_upright = nearest_period(
             offset_a6 + degrees(direction_y_a6_upright, scaled_r11_from_a4_upright),

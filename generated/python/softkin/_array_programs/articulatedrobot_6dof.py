@@ -13,6 +13,8 @@ from softkin._array import (
     Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     cos,
@@ -145,7 +147,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -323,12 +325,8 @@ class ArrayPrograms(Programs):
                 turned_sin_q1_for_q3, value_q1_for_q3,
             ),
         )
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = select(both_q3 > 0.0, both_q3, 1.0)
@@ -354,21 +352,13 @@ class ArrayPrograms(Programs):
         cos_q2 = along_q2/length_q2  # its reference where it is free
         sin_q2 = across_q2/length_q2
         cos_q2, sin_q2 = elsewhere(reach > 1e-11*machine_scale, (cos_q2, sin_q2), elsewhere_cos_q2, (ref_a2,))
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: its turn
         cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
         sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
         sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
@@ -385,29 +375,21 @@ class ArrayPrograms(Programs):
             return (direction_x_q4, direction_y_q4)
 
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
-        direction_x_q4 = -r13_from_q123*sigma_hand
-        direction_y_q4 = r23_from_q1*sigma_hand
+        direction_x_q4 = -sigma_hand*r13_from_q123
+        direction_y_q4 = sigma_hand*r23_from_q1
         direction_x_q4, direction_y_q4 = elsewhere(
             radius_q4 > 1e-11,
             (direction_x_q4, direction_y_q4),
             elsewhere_direction_x_q4,
             (ref_a4,),
         )
-        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(
-            absolute(turn_a4) > 0.0,
-            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
-            open_a4,
-        )
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         axis_a4 = nearest_period(offset_a4 + degrees(direction_y_q4, direction_x_q4), near_a4)  # A4: its turn
-        q4_radius_of_q5 = radius_q4*sigma_hand
+        q4_radius_of_q5 = sigma_hand*radius_q4
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(
-            absolute(turn_a5) > 0.0,
-            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
-            open_a5,
-        )
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         axis_a5 = nearest_period(offset_a5 + degrees(q4_radius_of_q5, cos_q5), near_a5)  # A5: its turn
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r11_from_q1 = r11*cos_q1 + r21*sin_q1
@@ -417,12 +399,8 @@ class ArrayPrograms(Programs):
         r12_from_q1 = r12*cos_q1 + r22*sin_q1
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         scaled_r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
-        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(
-            absolute(turn_a6) > 0.0,
-            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
-            open_a6,
-        )
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         # A6: its turn
         axis_a6 = nearest_period(offset_a6 + degrees(scaled_r21_from_q1234, scaled_r22_from_q1234), near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
@@ -459,7 +437,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -740,14 +718,9 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_q3_front = (effective_q3 + reach_front - a2)*(a2 + reach_front - effective_q3)
         sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front  # the square of sine times scale
-        # q3: out of reach
-        refusal_front = select(sine_square_q3_front >= -1e-12*swing_scale_q3*swing_scale_q3, 0.0, 3.0)
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        refusal_front = select(sine_square_q3_front >= -1e-12*swing_scale_q3*swing_scale_q3, 0, 3)  # q3: out of reach
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
         # twice the scale, with the rounding of its parts
         both_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
@@ -785,22 +758,14 @@ class ArrayPrograms(Programs):
             elsewhere_cos_q2_front_down,
             (ref_a2,),
         )
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: its turn
         axis_a2_front_down = nearest_period(offset_a2 + degrees(sin_q2_front_down, cos_q2_front_down), near_a2)
         cos_q3_front_down = a3*cos_swing_q3_front/effective_q3 + d4*sin_swing_q3_front_up/effective_q3
         sin_q3_front_down = d4*cos_swing_q3_front/effective_q3 - a3*sin_swing_q3_front_up/effective_q3
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         # A3: its turn
         axis_a3_front_down = nearest_period(offset_a3 + degrees(sin_q3_front_down, cos_q3_front_down), near_a3)
         r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
@@ -845,12 +810,8 @@ class ArrayPrograms(Programs):
             direction_x_q4_front_down_down, direction_y_q4_front_down_down, direction_x_q4_front_down_up,
             direction_y_q4_front_down_up,
         ) = found
-        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(
-            absolute(turn_a4) > 0.0,
-            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
-            open_a4,
-        )
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # A4: its turn
         axis_a4_front_down_down = nearest_period(
             offset_a4 + degrees(direction_y_q4_front_down_down, direction_x_q4_front_down_down),
@@ -858,12 +819,8 @@ class ArrayPrograms(Programs):
         )
         # q5: linear pair in the q4 radius and r23 equations
         cos_q5_front_down = r13_from_q1_front*cos_q23_front_down + r33*sin_q23_front_down
-        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(
-            absolute(turn_a5) > 0.0,
-            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
-            open_a5,
-        )
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         # A5: its turn
         axis_a5_front_down_down = nearest_period(
             offset_a5 + degrees(radius_q4_front_down, cos_q5_front_down),
@@ -883,12 +840,8 @@ class ArrayPrograms(Programs):
             -direction_x_q4_front_down_down*r22_from_q1_front
             - direction_y_q4_front_down_down*r12_from_q123_front_down
         )
-        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(
-            absolute(turn_a6) > 0.0,
-            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
-            open_a6,
-        )
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         # A6: its turn
         axis_a6_front_down_down = nearest_period(
             offset_a6 + degrees(scaled_r21_from_q1234_front_down_down, scaled_r22_from_q1234_front_down_down),
@@ -1003,8 +956,7 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_q3_back = (effective_q3 + reach_back - a2)*(a2 + reach_back - effective_q3)
         sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back  # the square of sine times scale
-        # q3: out of reach
-        refusal_back = select(sine_square_q3_back >= -1e-12*swing_scale_q3*swing_scale_q3, 0.0, 3.0)
+        refusal_back = select(sine_square_q3_back >= -1e-12*swing_scale_q3*swing_scale_q3, 0, 3)  # q3: out of reach
         axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
         both_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back  # twice the scale, with the rounding of its parts
         sum_q3_back = select(both_q3_back > 0.0, both_q3_back, 1.0)

@@ -12,6 +12,8 @@ from softkin._array import (
     Programs,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     cos,
@@ -91,7 +93,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -173,19 +175,11 @@ class ArrayPrograms(Programs):
         type2_arms_aligned = assembly_sign*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(outer_arm*outer_arm)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         require(status, type2_arms_aligned >= min_type2_margin, Status.UNREACHABLE)
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         return (axis_a1, axis_a2), status
 
@@ -205,7 +199,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -287,20 +281,12 @@ class ArrayPrograms(Programs):
             assembly_sign*(rod_1_x_outward*rod_2_y_outward - rod_1_y_outward*rod_2_x_outward)/(outer_arm*outer_arm)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward = select(type2_arms_aligned_outward_outward >= min_type2_margin, 0.0, 3.0)
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        refusal_outward_outward = select(type2_arms_aligned_outward_outward >= min_type2_margin, 0, 3)
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)  # A1: its turn
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)  # A2: its turn
         cos_a2_inward = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2_inward/divisor_a2
         pivot_2_x_inward = displacement + inner_arm*cos_a2_inward - tcp_displacement  # rod 2
@@ -312,7 +298,7 @@ class ArrayPrograms(Programs):
             assembly_sign*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)/(outer_arm*outer_arm)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward = select(type2_arms_aligned_outward_inward >= min_type2_margin, 0.0, 3.0)
+        refusal_outward_inward = select(type2_arms_aligned_outward_inward >= min_type2_margin, 0, 3)
         axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)  # A2: its turn
         cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + y*sin_swing_a1_outward/divisor_a1
         pivot_1_x_inward = tcp_displacement - displacement - inner_arm*cos_a1_inward  # rod 1
@@ -324,13 +310,13 @@ class ArrayPrograms(Programs):
             assembly_sign*(rod_1_x_inward*rod_2_y_outward - rod_1_y_inward*rod_2_x_outward)/(outer_arm*outer_arm)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward = select(type2_arms_aligned_inward_outward >= min_type2_margin, 0.0, 3.0)
+        refusal_inward_outward = select(type2_arms_aligned_inward_outward >= min_type2_margin, 0, 3)
         axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)  # A1: its turn
         type2_arms_aligned_inward_inward = (
             assembly_sign*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)/(outer_arm*outer_arm)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward = select(type2_arms_aligned_inward_inward >= min_type2_margin, 0.0, 3.0)
+        refusal_inward_inward = select(type2_arms_aligned_inward_inward >= min_type2_margin, 0, 3)
         status_outward_outward = refused(status, refusal_outward_outward)
         status_inward_outward = refused(status, refusal_inward_outward)
         status_outward_inward = refused(status, refusal_outward_inward)

@@ -11,6 +11,8 @@ from softkin._array import (
     OrientationPrograms,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     cos,
@@ -49,7 +51,7 @@ class ArrayPrograms(OrientationPrograms):
         return ((0.0, 0.0, 0.0), ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), _ = rotation
@@ -67,8 +69,8 @@ class ArrayPrograms(OrientationPrograms):
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
-        near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
+        open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
+        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
         axis_c = nearest_period(offset_c + degrees(heading_across, heading_along), near_c)  # C: its turn
         return (axis_c,), status
 

@@ -12,6 +12,8 @@ from softkin._array import (
     Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     atan2,
@@ -74,7 +76,7 @@ class ArrayPrograms(Programs):
         return ((x, y, z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -115,12 +117,8 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_theta,
             (ref_theta,),
         )
-        open_theta = select(single_theta > 0.0, mid_theta, ref_theta)  # Theta: where its turn is open
-        near_theta = select(
-            absolute(turn_theta) > 0.0,
-            select(turn_theta > 0.0, 360.0*turn_theta - 360.0, 360.0*turn_theta),
-            open_theta,
-        )
+        open_theta = select(single_theta, mid_theta, ref_theta)  # Theta: where its turn is open
+        near_theta = select(turn_theta != 0, 360.0*select(turn_theta > 0, turn_theta - 1, turn_theta), open_theta)
         # Theta: its turn
         axis_theta = nearest_period(offset_theta + degrees(direction_y_theta, direction_x_theta), near_theta)
 

@@ -11,6 +11,8 @@ from softkin._array import (
     Programs,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     cos,
@@ -65,7 +67,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -97,8 +99,8 @@ class ArrayPrograms(Programs):
         axis_x = offset_x + x
         axis_y = offset_y + y
         direction_y_r = direction_r*heading_across
-        open_r = select(single_r > 0.0, mid_r, ref_r)  # R: where its turn is open
-        near_r = select(absolute(turn_r) > 0.0, select(turn_r > 0.0, 360.0*turn_r - 360.0, 360.0*turn_r), open_r)
+        open_r = select(single_r, mid_r, ref_r)  # R: where its turn is open
+        near_r = select(turn_r != 0, 360.0*select(turn_r > 0, turn_r - 1, turn_r), open_r)
         axis_r = nearest_period(offset_r + degrees(direction_y_r, heading_along), near_r)  # R: its turn
         return (axis_x, axis_y, axis_r), status
 

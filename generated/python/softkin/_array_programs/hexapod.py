@@ -9,7 +9,9 @@ from softkin._array import (
     Codes,
     Reals,
     Rotation,
+    Signs,
     StartedPrograms,
+    Turns,
     Vector,
     absolute,
     advanced,
@@ -131,7 +133,7 @@ class ArrayPrograms(StartedPrograms):
         start_arm_6_y = platform_6_x*start_r21 + platform_6_y*start_r22 + platform_6_z*start_r23
         start_arm_6_z = platform_6_x*start_r31 + platform_6_y*start_r32 + platform_6_z*start_r33
         # Newton's method: every pass improves the pose until the rods fit
-        x, y, z, roll, pitch, yaw, fitted = initial(start_x, start_y, start_z, 0.0, 0.0, 0.0, 0.0)
+        x, y, z, roll, pitch, yaw, fitted = initial(start_x, start_y, start_z, 0.0, 0.0, 0.0, False)
         for _ in range(20):
             cos_pitch = cos(pitch)
             cos_yaw = cos(yaw)
@@ -197,13 +199,9 @@ class ArrayPrograms(StartedPrograms):
             length_6 = sqrt(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
             error_6 = length_6 - l6  # by what leg 6 would be too long
             # whether the rods fit
-            fit = select(
-                (
-                    (absolute(error_1) <= within) & (absolute(error_2) <= within) & (absolute(error_3) <= within)
-                    & (absolute(error_4) <= within) & (absolute(error_5) <= within) & (absolute(error_6) <= within)
-                ),
-                1.0,
-                0.0,
+            fit = (
+                (absolute(error_1) <= within) & (absolute(error_2) <= within) & (absolute(error_3) <= within)
+                & (absolute(error_4) <= within) & (absolute(error_5) <= within) & (absolute(error_6) <= within)
             )
             # leg 1: its direction, and the moment of that about the platform's origin
             divisor_1 = select(length_1 > 1e-9*machine_scale, length_1, 1.0)
@@ -279,7 +277,7 @@ class ArrayPrograms(StartedPrograms):
                 + z_rate*z_rate/(machine_scale*machine_scale)
             )
             stretch = select(size > 0.5, 2.0*size, 1.0)
-            done = (fit > 0.5) & (fitted > 0.5)
+            done = fit & fitted
             if settled(done, status):
                 break
             x, y, z, roll, pitch, yaw, fitted = advanced(
@@ -373,7 +371,7 @@ class ArrayPrograms(StartedPrograms):
         return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position

@@ -10,8 +10,11 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     cos,
@@ -61,7 +64,20 @@ class ArrayPrograms(Programs):
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+
+        def elsewhere_centre_1_x(pivot_upper_x: Real, pivot_upper_y: Real) -> Reals:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
+            return (centre_1_x, centre_1_y)
+
+        centre_1_x = pivot_upper_y
+        centre_1_y = pivot_upper_x
+        centre_1_x, centre_1_y = elsewhere(
+            swap_xy,
+            (centre_1_x, centre_1_y),
+            elsewhere_centre_1_x,
+            (pivot_upper_x, pivot_upper_y),
+        )
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear
@@ -69,16 +85,9 @@ class ArrayPrograms(Programs):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (
-            (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
-            /link_length_3
-        )
+        centre_2_x = select(swap_xy, -link_length_2*pivot_rear_y, -link_length_2*pivot_rear_x)/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-        centre_2_y = (
-            (link_length_2*pivot_rear_y*swap_xy - link_length_2*pivot_rear_y - link_length_2*pivot_rear_x*swap_xy)
-            /link_length_3
-        )
+        centre_2_y = select(swap_xy, -link_length_2*pivot_rear_x, -link_length_2*pivot_rear_y)/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -99,19 +108,25 @@ class ArrayPrograms(Programs):
         x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
-        span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
-        span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
+
+        def elsewhere_span_upper_x(x: Real, y: Real) -> Reals:
+            span_upper_x = x  # rod upper
+            span_upper_y = y  # rod upper
+            span_rear_x = -link_length_3*x/link_length_2  # rod rear
+            span_rear_y = -link_length_3*y/link_length_2  # rod rear
+            return (span_upper_x, span_upper_y, span_rear_x, span_rear_y)
+
+        span_upper_x = y  # rod upper
+        span_upper_y = x  # rod upper
+        span_rear_x = -link_length_3*y/link_length_2  # rod rear
+        span_rear_y = -link_length_3*x/link_length_2  # rod rear
+        span_upper_x, span_upper_y, span_rear_x, span_rear_y = elsewhere(
+            swap_xy,
+            (span_upper_x, span_upper_y, span_rear_x, span_rear_y),
+            elsewhere_span_upper_x,
+            (x, y),
+        )
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        # rod rear
-        span_rear_x = (
-            link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
-            - link_length_3*swap_xy*y/link_length_2
-        )
-        # rod rear
-        span_rear_y = (
-            link_length_3*swap_xy*y/link_length_2 - link_length_3*y/link_length_2
-            - link_length_3*swap_xy*x/link_length_2
-        )
         branch_w = (
             (
                 link_length_1*link_length_2*cos_a1*cos_a2 + link_length_1*link_length_3*cos_a1*cos_a2
@@ -123,7 +138,7 @@ class ArrayPrograms(Programs):
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_t, branch_w)), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -158,8 +173,15 @@ class ArrayPrograms(Programs):
         )
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
-        span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
-        span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
+
+        def elsewhere_span_upper_x(x: Real, y: Real) -> Reals:
+            span_upper_x = x  # rod upper
+            span_upper_y = y  # rod upper
+            return (span_upper_x, span_upper_y)
+
+        span_upper_x = y  # rod upper
+        span_upper_y = x  # rod upper
+        span_upper_x, span_upper_y = elsewhere(swap_xy, (span_upper_x, span_upper_y), elsewhere_span_upper_x, (x, y))
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
@@ -178,21 +200,20 @@ class ArrayPrograms(Programs):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-        # rod rear
-        span_rear_x = (
-            link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
-            - link_length_3*swap_xy*y/link_length_2
-        )
+
+        def elsewhere_span_rear_x(x: Real, y: Real) -> Reals:
+            span_rear_x = -link_length_3*x/link_length_2  # rod rear
+            span_rear_y = -link_length_3*y/link_length_2  # rod rear
+            return (span_rear_x, span_rear_y)
+
+        span_rear_x = -link_length_3*y/link_length_2  # rod rear
+        span_rear_y = -link_length_3*x/link_length_2  # rod rear
+        span_rear_x, span_rear_y = elsewhere(swap_xy, (span_rear_x, span_rear_y), elsewhere_span_rear_x, (x, y))
         along_a2 = (
             (link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1 - link_length_1*link_length_3*sin_a1)
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
-        # rod rear
-        span_rear_y = (
-            link_length_3*swap_xy*y/link_length_2 - link_length_3*y/link_length_2
-            - link_length_3*swap_xy*x/link_length_2
-        )
         across_a2 = (
             (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
             /link_length_2
@@ -211,9 +232,21 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+
+        def elsewhere_centre_1_x(pivot_upper_x: Real, pivot_upper_y: Real) -> Reals:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
+            return (centre_1_x, centre_1_y)
+
+        centre_1_x = pivot_upper_y
+        centre_1_y = pivot_upper_x
+        centre_1_x, centre_1_y = elsewhere(
+            swap_xy,
+            (centre_1_x, centre_1_y),
+            elsewhere_centre_1_x,
+            (pivot_upper_x, pivot_upper_y),
+        )
         rod_1_x = x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
         rod_1_y = y - centre_1_y
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
@@ -225,15 +258,9 @@ class ArrayPrograms(Programs):
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (
-            (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
-            /link_length_3
-        )
+        centre_2_x = select(swap_xy, -link_length_2*pivot_rear_y, -link_length_2*pivot_rear_x)/link_length_3
         rod_2_x = x - centre_2_x
-        centre_2_y = (
-            (link_length_2*pivot_rear_y*swap_xy - link_length_2*pivot_rear_y - link_length_2*pivot_rear_x*swap_xy)
-            /link_length_3
-        )
+        centre_2_y = select(swap_xy, -link_length_2*pivot_rear_x, -link_length_2*pivot_rear_y)/link_length_3
         rod_2_y = y - centre_2_y
         type2_arms_aligned = (
             assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
@@ -241,19 +268,11 @@ class ArrayPrograms(Programs):
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         require(status, type2_arms_aligned >= min_type2_margin, Status.UNREACHABLE)
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         return (axis_a1, axis_a2), status
 
@@ -273,7 +292,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -307,8 +326,15 @@ class ArrayPrograms(Programs):
         )
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
-        span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
-        span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
+
+        def elsewhere_span_upper_x(x: Real, y: Real) -> Reals:
+            span_upper_x = x  # rod upper
+            span_upper_y = y  # rod upper
+            return (span_upper_x, span_upper_y)
+
+        span_upper_x = y  # rod upper
+        span_upper_y = x  # rod upper
+        span_upper_x, span_upper_y = elsewhere(swap_xy, (span_upper_x, span_upper_y), elsewhere_span_upper_x, (x, y))
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
@@ -327,11 +353,37 @@ class ArrayPrograms(Programs):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1_right = 2.0*root(sine_square_a1)/sum_a1
         sin_a1_left = span_upper_x*cos_swing_a1/divisor_a1 - span_upper_y*sin_swing_a1_right/divisor_a1
+        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
         cos_a1_left = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_right/divisor_a1
-        # rod rear
-        span_rear_x = (
-            link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
-            - link_length_3*swap_xy*y/link_length_2
+        pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
+        sin_a1_right = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1_right/divisor_a1
+        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
+        cos_a1_right = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1_right/divisor_a1
+        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
+
+        def elsewhere_centre_1_x_left(
+            pivot_upper_x_left: Real, pivot_upper_x_right: Real, pivot_upper_y_left: Real, pivot_upper_y_right: Real,
+            x: Real, y: Real,
+        ) -> Reals:
+            centre_1_x_left = pivot_upper_x_left
+            centre_1_y_left = pivot_upper_y_left
+            span_rear_x = -link_length_3*x/link_length_2  # rod rear
+            span_rear_y = -link_length_3*y/link_length_2  # rod rear
+            centre_1_x_right = pivot_upper_x_right
+            centre_1_y_right = pivot_upper_y_right
+            return (centre_1_x_left, centre_1_y_left, span_rear_x, span_rear_y, centre_1_x_right, centre_1_y_right)
+
+        centre_1_x_left = pivot_upper_y_left
+        centre_1_y_left = pivot_upper_x_left
+        span_rear_x = -link_length_3*y/link_length_2  # rod rear
+        span_rear_y = -link_length_3*x/link_length_2  # rod rear
+        centre_1_x_right = pivot_upper_y_right
+        centre_1_y_right = pivot_upper_x_right
+        centre_1_x_left, centre_1_y_left, span_rear_x, span_rear_y, centre_1_x_right, centre_1_y_right = elsewhere(
+            swap_xy,
+            (centre_1_x_left, centre_1_y_left, span_rear_x, span_rear_y, centre_1_x_right, centre_1_y_right),
+            elsewhere_centre_1_x_left,
+            (pivot_upper_x_left, pivot_upper_x_right, pivot_upper_y_left, pivot_upper_y_right, x, y),
         )
         along_a2_left = (
             (
@@ -339,11 +391,6 @@ class ArrayPrograms(Programs):
                 - link_length_1*link_length_3*sin_a1_left
             )
             /link_length_2
-        )
-        # rod rear
-        span_rear_y = (
-            link_length_3*swap_xy*y/link_length_2 - link_length_3*y/link_length_2
-            - link_length_3*swap_xy*x/link_length_2
         )
         across_a2_left = (
             (
@@ -383,15 +430,11 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_refusal_left_left() -> Reals:
-            refusal_left_left = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_right = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_left_left = 3  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_left_right = 3  # arms_aligned: the other assembly mode, or too near to losing the plate
             return (refusal_left_left, refusal_left_right)
 
-        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
-        pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
-        centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
         rod_1_x_left = x - centre_1_x_left
-        centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
         rod_1_y_left = y - centre_1_y_left
         # rod rear
         pivot_rear_x_left_left = (
@@ -404,18 +447,12 @@ class ArrayPrograms(Programs):
             + link_length_1*link_length_3*cos_a1_left/link_length_2
         )
         centre_2_x_left_left = (
-            (
-                link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
-                - link_length_2*pivot_rear_y_left_left*swap_xy
-            )
+            select(swap_xy, -link_length_2*pivot_rear_y_left_left, -link_length_2*pivot_rear_x_left_left)
             /link_length_3
         )
         rod_2_x_left_left = x - centre_2_x_left_left
         centre_2_y_left_left = (
-            (
-                link_length_2*pivot_rear_y_left_left*swap_xy - link_length_2*pivot_rear_y_left_left
-                - link_length_2*pivot_rear_x_left_left*swap_xy
-            )
+            select(swap_xy, -link_length_2*pivot_rear_x_left_left, -link_length_2*pivot_rear_y_left_left)
             /link_length_3
         )
         rod_2_y_left_left = y - centre_2_y_left_left
@@ -424,7 +461,7 @@ class ArrayPrograms(Programs):
             /(link_length_4*link_length_2*link_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0)
+        refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0, 3)
         # rod rear
         pivot_rear_x_left_right = (
             link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
@@ -436,18 +473,12 @@ class ArrayPrograms(Programs):
             + link_length_1*link_length_3*cos_a1_left/link_length_2
         )
         centre_2_x_left_right = (
-            (
-                link_length_2*pivot_rear_x_left_right*swap_xy - link_length_2*pivot_rear_x_left_right
-                - link_length_2*pivot_rear_y_left_right*swap_xy
-            )
+            select(swap_xy, -link_length_2*pivot_rear_y_left_right, -link_length_2*pivot_rear_x_left_right)
             /link_length_3
         )
         rod_2_x_left_right = x - centre_2_x_left_right
         centre_2_y_left_right = (
-            (
-                link_length_2*pivot_rear_y_left_right*swap_xy - link_length_2*pivot_rear_y_left_right
-                - link_length_2*pivot_rear_x_left_right*swap_xy
-            )
+            select(swap_xy, -link_length_2*pivot_rear_x_left_right, -link_length_2*pivot_rear_y_left_right)
             /link_length_3
         )
         rod_2_y_left_right = y - centre_2_y_left_right
@@ -456,7 +487,7 @@ class ArrayPrograms(Programs):
             /(link_length_4*link_length_2*link_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0)
+        refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0, 3)
         refusal_left_left, refusal_left_right = elsewhere(
             (
                 (effective_a2_left > 1e-9*link_length_5)
@@ -466,25 +497,15 @@ class ArrayPrograms(Programs):
             elsewhere_refusal_left_left,
             (),
         )
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1_left = nearest_period(offset_a1 + degrees(sin_a1_left, cos_a1_left), near_a1)  # A1: its turn
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: its turn
         axis_a2_left_left = nearest_period(offset_a2 + degrees(sin_a2_left_left, cos_a2_left_left), near_a2)
         # A2: its turn
         axis_a2_left_right = nearest_period(offset_a2 + degrees(sin_a2_left_right, cos_a2_left_right), near_a2)
-        sin_a1_right = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1_right/divisor_a1
-        cos_a1_right = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1_right/divisor_a1
         along_a2_right = (
             (
                 link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1_right
@@ -535,15 +556,11 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_refusal_right_left() -> Reals:
-            refusal_right_left = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_right = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_right_left = 3  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_right_right = 3  # arms_aligned: the other assembly mode, or too near to losing the plate
             return (refusal_right_left, refusal_right_right)
 
-        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
-        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
-        centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
         rod_1_x_right = x - centre_1_x_right
-        centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
         rod_1_y_right = y - centre_1_y_right
         # rod rear
         pivot_rear_x_right_left = (
@@ -556,18 +573,12 @@ class ArrayPrograms(Programs):
             + link_length_1*link_length_3*cos_a1_right/link_length_2
         )
         centre_2_x_right_left = (
-            (
-                link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
-                - link_length_2*pivot_rear_y_right_left*swap_xy
-            )
+            select(swap_xy, -link_length_2*pivot_rear_y_right_left, -link_length_2*pivot_rear_x_right_left)
             /link_length_3
         )
         rod_2_x_right_left = x - centre_2_x_right_left
         centre_2_y_right_left = (
-            (
-                link_length_2*pivot_rear_y_right_left*swap_xy - link_length_2*pivot_rear_y_right_left
-                - link_length_2*pivot_rear_x_right_left*swap_xy
-            )
+            select(swap_xy, -link_length_2*pivot_rear_x_right_left, -link_length_2*pivot_rear_y_right_left)
             /link_length_3
         )
         rod_2_y_right_left = y - centre_2_y_right_left
@@ -576,7 +587,7 @@ class ArrayPrograms(Programs):
             /(link_length_4*link_length_2*link_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0)
+        refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0, 3)
         # rod rear
         pivot_rear_x_right_right = (
             link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
@@ -588,18 +599,12 @@ class ArrayPrograms(Programs):
             + link_length_1*link_length_3*cos_a1_right/link_length_2
         )
         centre_2_x_right_right = (
-            (
-                link_length_2*pivot_rear_x_right_right*swap_xy - link_length_2*pivot_rear_x_right_right
-                - link_length_2*pivot_rear_y_right_right*swap_xy
-            )
+            select(swap_xy, -link_length_2*pivot_rear_y_right_right, -link_length_2*pivot_rear_x_right_right)
             /link_length_3
         )
         rod_2_x_right_right = x - centre_2_x_right_right
         centre_2_y_right_right = (
-            (
-                link_length_2*pivot_rear_y_right_right*swap_xy - link_length_2*pivot_rear_y_right_right
-                - link_length_2*pivot_rear_x_right_right*swap_xy
-            )
+            select(swap_xy, -link_length_2*pivot_rear_x_right_right, -link_length_2*pivot_rear_y_right_right)
             /link_length_3
         )
         rod_2_y_right_right = y - centre_2_y_right_right
@@ -608,7 +613,7 @@ class ArrayPrograms(Programs):
             /(link_length_4*link_length_2*link_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0)
+        refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0, 3)
         refusal_right_left, refusal_right_right = elsewhere(
             (
                 (effective_a2_right > 1e-9*link_length_5)

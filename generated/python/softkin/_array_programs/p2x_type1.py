@@ -11,6 +11,8 @@ from softkin._array import (
     Programs,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     passed,
@@ -89,7 +91,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -152,7 +154,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -193,7 +195,7 @@ class ArrayPrograms(Programs):
             assembly_sign*(rod_1_x_left*span_2_y - rod_2_x_right*span_1_y)/(arm_length_1*arm_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0)
+        refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0, 3)
         axis_a1_left = a1_left + offset_a1
         axis_a2_right = a2_right + offset_a2
         a2_left = span_2_x - root(root_square_a2)
@@ -203,7 +205,7 @@ class ArrayPrograms(Programs):
             assembly_sign*(rod_1_x_left*span_2_y - rod_2_x_left*span_1_y)/(arm_length_1*arm_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0)
+        refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0, 3)
         axis_a2_left = a2_left + offset_a2
         a1_right = span_1_x + root(root_square_a1)
         pivot_1_x_right = a1_right + tcp_offset_1  # rod 1
@@ -212,13 +214,13 @@ class ArrayPrograms(Programs):
             assembly_sign*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)/(arm_length_1*arm_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0)
+        refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0, 3)
         axis_a1_right = a1_right + offset_a1
         type2_arms_aligned_right_left = (
             assembly_sign*(rod_1_x_right*span_2_y - rod_2_x_left*span_1_y)/(arm_length_1*arm_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0)
+        refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0, 3)
         status_left_right = refused(status, refusal_left_right)
         status_right_right = refused(status, refusal_right_right)
         status_left_left = refused(status, refusal_left_left)

@@ -12,6 +12,8 @@ from softkin._array import (
     Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     cos,
@@ -57,7 +59,7 @@ class ArrayPrograms(Programs):
         return ((x, y, 0.0), ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -94,8 +96,8 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_c,
             (ref_c,),
         )
-        open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
-        near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
+        open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
+        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
         axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
         axis_r = offset_r + radius_c
         return (axis_c, axis_r), status

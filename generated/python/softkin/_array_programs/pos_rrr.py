@@ -13,6 +13,8 @@ from softkin._array import (
     Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     cos,
@@ -102,7 +104,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -264,12 +266,8 @@ class ArrayPrograms(Programs):
                 turned_sin_q1_for_q3, value_q1_for_q3,
             ),
         )
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = select(both_q3 > 0.0, both_q3, 1.0)
@@ -294,21 +292,13 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_q2,
             (ref_a2,),
         )
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(direction_y_q2, direction_x_q2), near_a2)  # A2: its turn
         cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
         sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
         return (axis_a1, axis_a2, axis_a3), status
 
@@ -332,7 +322,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -596,13 +586,9 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_front = (effective_q3_2 + reach_front - a2)*(a2 + reach_front - effective_q3_2)
         sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front  # the square of sine times scale
         # q3: out of reach
-        refusal_front = select(sine_square_q3_front >= -1e-12*swing_scale_q3_2*swing_scale_q3_2, 0.0, 3.0)
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        refusal_front = select(sine_square_q3_front >= -1e-12*swing_scale_q3_2*swing_scale_q3_2, 0, 3)
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
         # twice the scale, with the rounding of its parts
         both_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
@@ -641,12 +627,8 @@ class ArrayPrograms(Programs):
             (ref_a2,),
         )
         direction_x_q2_front_down, direction_y_q2_front_down, direction_x_q2_front_up, direction_y_q2_front_up = found
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: its turn
         axis_a2_front_down = nearest_period(
             offset_a2 + degrees(direction_y_q2_front_down, direction_x_q2_front_down),
@@ -654,12 +636,8 @@ class ArrayPrograms(Programs):
         )
         cos_q3_front_down = a3*cos_swing_q3_front/effective_q3_2 + d4*sin_swing_q3_front_up/effective_q3_2
         sin_q3_front_down = d4*cos_swing_q3_front/effective_q3_2 - a3*sin_swing_q3_front_up/effective_q3_2
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         # A3: its turn
         axis_a3_front_down = nearest_period(offset_a3 + degrees(sin_q3_front_down, cos_q3_front_down), near_a3)
         # A2: its turn
@@ -679,7 +657,7 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_back = (effective_q3_2 + reach_back - a2)*(a2 + reach_back - effective_q3_2)
         sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back  # the square of sine times scale
         # q3: out of reach
-        refusal_back = select(sine_square_q3_back >= -1e-12*swing_scale_q3_2*swing_scale_q3_2, 0.0, 3.0)
+        refusal_back = select(sine_square_q3_back >= -1e-12*swing_scale_q3_2*swing_scale_q3_2, 0, 3)
         axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
         both_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back  # twice the scale, with the rounding of its parts
         sum_q3_back = select(both_q3_back > 0.0, both_q3_back, 1.0)

@@ -13,6 +13,8 @@ from softkin._array import (
     Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     atan2,
@@ -79,7 +81,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -155,28 +157,16 @@ class ArrayPrograms(Programs):
             (ref_a2,),
         )
         angle_a2 = atan2(direction_y_a2, direction_x_a2)
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
         angle_a3 = atan2(sin_a3, cos_a3)
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(offset_a3 + angle_a3/DEGREE, near_a3)  # A3: its turn
         angle_heading = atan2(sin_heading, cos_heading)
-        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(
-            absolute(turn_a4) > 0.0,
-            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
-            open_a4,
-        )
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # a4: what the sum a234 leaves; A4: its turn
         axis_a4 = nearest_period(offset_a4 + (angle_heading - angle_a2 - angle_a3)/DEGREE, near_a4)
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
@@ -205,7 +195,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -287,28 +277,16 @@ class ArrayPrograms(Programs):
             (ref_a2,),
         )
         angle_a2_right = atan2(direction_y_a2_right, direction_x_a2_right)
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2_right = nearest_period(offset_a2 + angle_a2_right/DEGREE, near_a2)  # A2: its turn
         angle_a3_right = atan2(sin_a3_right, cos_a3)
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3_right = nearest_period(offset_a3 + angle_a3_right/DEGREE, near_a3)  # A3: its turn
         angle_heading = atan2(sin_heading, cos_heading)
-        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(
-            absolute(turn_a4) > 0.0,
-            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
-            open_a4,
-        )
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # a4: what the sum a234 leaves; A4: its turn
         axis_a4_right = nearest_period(offset_a4 + (angle_heading - angle_a2_right - angle_a3_right)/DEGREE, near_a4)
         angle_a2_left = atan2(direction_y_a2_left, direction_x_a2_left)

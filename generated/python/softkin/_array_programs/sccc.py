@@ -13,6 +13,8 @@ from softkin._array import (
     Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     atan2,
@@ -79,7 +81,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -158,51 +160,58 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
         angle_a2 = atan2(sin_a2, cos_a2)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
 
-        def elsewhere_near_a2(motor_a1: Real, ref_a1: Real, ref_a2: Real) -> Reals:
+        def elsewhere_near_a2(motor_a1: Real, ref_a1: Real, ref_a2: Real, single_a2: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
             # A2: where its turn is open
-            open_a2 = select(single_a2 > 0.0, mid_a2, offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE)
+            open_a2 = select(single_a2, mid_a2, offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE)
             near_a2 = open_a2
             return (near_a2,)
 
-        near_a2 = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
-        (near_a2,) = elsewhere(absolute(turn_a2) > 0.0, (near_a2,), elsewhere_near_a2, (motor_a1, ref_a1, ref_a2))
+        near_a2 = 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2)
+        (near_a2,) = elsewhere(turn_a2 != 0, (near_a2,), elsewhere_near_a2, (motor_a1, ref_a1, ref_a2, single_a2))
         axis_a2 = nearest_period(offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE, near_a2)  # A2: its turn
         angle_heading = atan2(sin_heading, cos_heading)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
 
-        def elsewhere_near_a3(motor_a1: Real, motor_a2: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real) -> Reals:
+        def elsewhere_near_a3(
+            motor_a1: Real, motor_a2: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real, single_a3: Real,
+        ) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            open_a3: Real
-            if single_a3 > 0.0:
-                open_a3 = mid_a3  # A3: where its turn is open
-            else:
+
+            def elsewhere_open_a3(
+                free_a1: Real, motor_a1: Real, motor_a2: Real, ref_a3: Real, ref_motor_a2: Real,
+            ) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
                 # A3: where its turn is open
                 open_a3 = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE
+                return (open_a3,)
+
+            open_a3 = mid_a3  # A3: where its turn is open
+            (open_a3,) = elsewhere(
+                single_a3,
+                (open_a3,),
+                elsewhere_open_a3,
+                (free_a1, motor_a1, motor_a2, ref_a3, ref_motor_a2),
+            )
             near_a3 = open_a3
             return (near_a3,)
 
-        near_a3 = select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3)
+        near_a3 = 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3)
         (near_a3,) = elsewhere(
-            absolute(turn_a3) > 0.0,
+            turn_a3 != 0,
             (near_a3,),
             elsewhere_near_a3,
-            (motor_a1, motor_a2, ref_a1, ref_a2, ref_a3),
+            (motor_a1, motor_a2, ref_a1, ref_a2, ref_a3, single_a3),
         )
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3 = nearest_period(
@@ -255,7 +264,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -340,12 +349,8 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: its turn
         angle_a2_right = atan2(sin_a2_right, cos_a2)
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
@@ -353,29 +358,39 @@ class ArrayPrograms(Programs):
         axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
 
-        def elsewhere_near_a2_right(motor_a1_left: Real, motor_a1_right: Real, ref_a1: Real, ref_a2: Real) -> Reals:
+        def elsewhere_near_a2_right(
+            motor_a1_left: Real, motor_a1_right: Real, ref_a1: Real, ref_a2: Real, single_a2: Real,
+        ) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            open_a2_right: Real
-            open_a2_left: Real
-            if single_a2 > 0.0:
-                open_a2_right = mid_a2  # A2: where its turn is open
-                open_a2_left = mid_a2  # A2: where its turn is open
-            else:
+
+            def elsewhere_open_a2_right(
+                free_a1: Real, motor_a1_left: Real, motor_a1_right: Real, ref_motor_a2: Real,
+            ) -> Reals:
                 free_a2 = ref_motor_a2 + coupling_12*free_a1
                 open_a2_right = offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: where its turn is open
                 open_a2_left = offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: where its turn is open
+                return (open_a2_right, open_a2_left)
+
+            open_a2_right = mid_a2  # A2: where its turn is open
+            open_a2_left = mid_a2  # A2: where its turn is open
+            open_a2_right, open_a2_left = elsewhere(
+                single_a2,
+                (open_a2_right, open_a2_left),
+                elsewhere_open_a2_right,
+                (free_a1, motor_a1_left, motor_a1_right, ref_motor_a2),
+            )
             near_a2_right = open_a2_right
             near_a2_left = open_a2_left
             return (near_a2_right, near_a2_left)
 
-        near_a2_right = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
+        near_a2_right = 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2)
         near_a2_left = near_a2_right
         near_a2_right, near_a2_left = elsewhere(
-            absolute(turn_a2) > 0.0,
+            turn_a2 != 0,
             (near_a2_right, near_a2_left),
             elsewhere_near_a2_right,
-            (motor_a1_left, motor_a1_right, ref_a1, ref_a2),
+            (motor_a1_left, motor_a1_right, ref_a1, ref_a2, single_a2),
         )
         # A2: its turn
         axis_a2_right = nearest_period(
@@ -392,33 +407,42 @@ class ArrayPrograms(Programs):
 
         def elsewhere_near_a3_right(
             motor_a1_left: Real, motor_a1_right: Real, motor_a2_left: Real, motor_a2_right: Real, ref_a1: Real,
-            ref_a2: Real, ref_a3: Real,
+            ref_a2: Real, ref_a3: Real, single_a3: Real,
         ) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            open_a3_right: Real
-            open_a3_left: Real
-            if single_a3 > 0.0:
-                open_a3_right = mid_a3  # A3: where its turn is open
-                open_a3_left = mid_a3  # A3: where its turn is open
-            else:
+
+            def elsewhere_open_a3_right(
+                free_a1: Real, motor_a1_left: Real, motor_a1_right: Real, motor_a2_left: Real, motor_a2_right: Real,
+                ref_a3: Real, ref_motor_a2: Real,
+            ) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
                 # A3: where its turn is open
                 open_a3_right = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE
                 # A3: where its turn is open
                 open_a3_left = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE
+                return (open_a3_right, open_a3_left)
+
+            open_a3_right = mid_a3  # A3: where its turn is open
+            open_a3_left = mid_a3  # A3: where its turn is open
+            open_a3_right, open_a3_left = elsewhere(
+                single_a3,
+                (open_a3_right, open_a3_left),
+                elsewhere_open_a3_right,
+                (free_a1, motor_a1_left, motor_a1_right, motor_a2_left, motor_a2_right, ref_a3, ref_motor_a2),
+            )
             near_a3_right = open_a3_right
             near_a3_left = open_a3_left
             return (near_a3_right, near_a3_left)
 
-        near_a3_right = select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3)
+        near_a3_right = 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3)
         near_a3_left = near_a3_right
         near_a3_right, near_a3_left = elsewhere(
-            absolute(turn_a3) > 0.0,
+            turn_a3 != 0,
             (near_a3_right, near_a3_left),
             elsewhere_near_a3_right,
-            (motor_a1_left, motor_a1_right, motor_a2_left, motor_a2_right, ref_a1, ref_a2, ref_a3),
+            (motor_a1_left, motor_a1_right, motor_a2_left, motor_a2_right, ref_a1, ref_a2, ref_a3, single_a3),
         )
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_right = nearest_period(

@@ -11,6 +11,8 @@ from softkin._array import (
     Programs,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     passed,
@@ -126,7 +128,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -246,7 +248,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -346,7 +348,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_below = select(type2_rods_coplanar_below_below_below >= min_type2_margin, 0.0, 3.0)
+        refusal_below_below_below = select(type2_rods_coplanar_below_below_below >= min_type2_margin, 0, 3)
         axis_a1_below = a1_below + offset_a1
         axis_a2_below = a2_below + offset_a2
         axis_a3_below = a3_below + offset_a3
@@ -370,7 +372,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0.0, 3.0)
+        refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0, 3)
         axis_a3_above = a3_above + offset_a3
         a2_above = middle_a2 - root(root_square_a2)
         pivot_2_x_above = 0.5*outer_radius + 0.5*a2_above*sin_rail_angle - 0.5*inner_radius  # rod 2
@@ -392,7 +394,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0.0, 3.0)
+        refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0, 3)
         axis_a2_above = a2_above + offset_a2
         type2_rods_coplanar_below_above_above = (
             assembly_sign
@@ -404,7 +406,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0.0, 3.0)
+        refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0, 3)
         a1_above = -middle_a1 - root(root_square_a1)
         pivot_1_x_above = inner_radius - outer_radius - a1_above*sin_rail_angle  # rod 1
         rod_1_x_above = x - pivot_1_x_above
@@ -420,7 +422,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0.0, 3.0)
+        refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0, 3)
         axis_a1_above = a1_above + offset_a1
         type2_rods_coplanar_above_below_above = (
             assembly_sign
@@ -432,7 +434,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0.0, 3.0)
+        refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0, 3)
         type2_rods_coplanar_above_above_below = (
             assembly_sign
             *(
@@ -443,7 +445,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0.0, 3.0)
+        refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0, 3)
         type2_rods_coplanar_above_above_above = (
             assembly_sign
             *(
@@ -454,7 +456,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_above = select(type2_rods_coplanar_above_above_above >= min_type2_margin, 0.0, 3.0)
+        refusal_above_above_above = select(type2_rods_coplanar_above_above_above >= min_type2_margin, 0, 3)
         status_below_below_below = refused(status, refusal_below_below_below)
         status_above_below_below = refused(status, refusal_above_below_below)
         status_below_above_below = refused(status, refusal_below_above_below)

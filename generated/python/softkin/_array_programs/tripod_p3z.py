@@ -11,6 +11,8 @@ from softkin._array import (
     Programs,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     passed,
@@ -109,7 +111,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -202,7 +204,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -268,7 +270,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_above = select(type2_rods_coplanar_above_above_above >= min_type2_margin, 0.0, 3.0)
+        refusal_above_above_above = select(type2_rods_coplanar_above_above_above >= min_type2_margin, 0, 3)
         axis_a1_above = a1_above + offset_a1
         axis_a2_above = a2_above + offset_a2
         axis_a3_above = a3_above + offset_a3
@@ -283,7 +285,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0.0, 3.0)
+        refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0, 3)
         axis_a3_below = a3_below + offset_a3
         a2_below = z - root(root_square_a2)
         rod_2_z_below = z - a2_below
@@ -296,7 +298,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0.0, 3.0)
+        refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0, 3)
         axis_a2_below = a2_below + offset_a2
         type2_rods_coplanar_above_below_below = (
             assembly_sign
@@ -307,7 +309,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0.0, 3.0)
+        refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0, 3)
         a1_below = z - root(root_square_a1)
         rod_1_z_below = z - a1_below
         type2_rods_coplanar_below_above_above = (
@@ -319,7 +321,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0.0, 3.0)
+        refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0, 3)
         axis_a1_below = a1_below + offset_a1
         type2_rods_coplanar_below_above_below = (
             assembly_sign
@@ -330,7 +332,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0.0, 3.0)
+        refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0, 3)
         type2_rods_coplanar_below_below_above = (
             assembly_sign
             *(
@@ -340,7 +342,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0.0, 3.0)
+        refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0, 3)
         type2_rods_coplanar_below_below_below = (
             assembly_sign
             *(
@@ -350,7 +352,7 @@ class ArrayPrograms(Programs):
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_below = select(type2_rods_coplanar_below_below_below >= min_type2_margin, 0.0, 3.0)
+        refusal_below_below_below = select(type2_rods_coplanar_below_below_below >= min_type2_margin, 0, 3)
         status_above_above_above = refused(status, refusal_above_above_above)
         status_below_above_above = refused(status, refusal_below_above_above)
         status_above_below_above = refused(status, refusal_above_below_above)

@@ -12,6 +12,8 @@ from softkin._array import (
     Programs,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     cos,
@@ -136,7 +138,7 @@ class ArrayPrograms(Programs):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -286,26 +288,14 @@ class ArrayPrograms(Programs):
             status, absolute(0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2) <= sin_max_angle_ball_joint,
             Status.UNREACHABLE,
         )
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: its turn
         return (axis_a1, axis_a2, axis_a3), status
 
@@ -329,7 +319,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -483,28 +473,16 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_outward = select(
-            type2_rods_coplanar_outward_outward_outward >= min_type2_margin, 0.0, 3.0,
+            type2_rods_coplanar_outward_outward_outward >= min_type2_margin, 0, 3,
         )
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)  # A1: its turn
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)  # A2: its turn
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)  # A3: its turn
         cos_a3_inward = across_a2*sin_swing_a3_inward/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
         pivot_3_x_inward = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_inward - 0.5*fixed_length_1  # rod 3
@@ -527,9 +505,7 @@ class ArrayPrograms(Programs):
             /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_inward = select(
-            type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0.0, 3.0,
-        )
+        refusal_outward_outward_inward = select(type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0, 3)
         axis_a3_inward = nearest_period(offset_a3 + degrees(sin_a3_inward, cos_a3_inward), near_a3)  # A3: its turn
         cos_a2_inward = across_a2*sin_swing_a2_inward/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
         pivot_2_x_inward = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_inward - 0.5*fixed_length_1  # rod 2
@@ -552,9 +528,7 @@ class ArrayPrograms(Programs):
             /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_outward = select(
-            type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0.0, 3.0,
-        )
+        refusal_outward_inward_outward = select(type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0, 3)
         axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)  # A2: its turn
         type2_rods_coplanar_outward_inward_inward = (
             assembly_sign
@@ -566,9 +540,7 @@ class ArrayPrograms(Programs):
             /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_inward = select(
-            type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0.0, 3.0,
-        )
+        refusal_outward_inward_inward = select(type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0, 3)
         cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + span_1_z*sin_swing_a1_outward/divisor_a1
         pivot_1_x_inward = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1_inward  # rod 1
         rod_1_x_inward = x - pivot_1_x_inward
@@ -585,9 +557,7 @@ class ArrayPrograms(Programs):
             /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward_outward = select(
-            type2_rods_coplanar_inward_outward_outward >= min_type2_margin, 0.0, 3.0,
-        )
+        refusal_inward_outward_outward = select(type2_rods_coplanar_inward_outward_outward >= min_type2_margin, 0, 3)
         axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)  # A1: its turn
         type2_rods_coplanar_inward_outward_inward = (
             assembly_sign
@@ -599,9 +569,7 @@ class ArrayPrograms(Programs):
             /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward_inward = select(
-            type2_rods_coplanar_inward_outward_inward >= min_type2_margin, 0.0, 3.0,
-        )
+        refusal_inward_outward_inward = select(type2_rods_coplanar_inward_outward_inward >= min_type2_margin, 0, 3)
         type2_rods_coplanar_inward_inward_outward = (
             assembly_sign
             *(
@@ -612,9 +580,7 @@ class ArrayPrograms(Programs):
             /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_outward = select(
-            type2_rods_coplanar_inward_inward_outward >= min_type2_margin, 0.0, 3.0,
-        )
+        refusal_inward_inward_outward = select(type2_rods_coplanar_inward_inward_outward >= min_type2_margin, 0, 3)
         type2_rods_coplanar_inward_inward_inward = (
             assembly_sign
             *(
@@ -625,7 +591,7 @@ class ArrayPrograms(Programs):
             /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_inward = select(type2_rods_coplanar_inward_inward_inward >= min_type2_margin, 0.0, 3.0)
+        refusal_inward_inward_inward = select(type2_rods_coplanar_inward_inward_inward >= min_type2_margin, 0, 3)
         status_outward_outward_outward = refused(status, refusal_outward_outward_outward)
         status_inward_outward_outward = refused(status, refusal_inward_outward_outward)
         status_outward_inward_outward = refused(status, refusal_outward_inward_outward)

@@ -13,6 +13,8 @@ from softkin._array import (
     Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     cos,
@@ -75,7 +77,7 @@ class ArrayPrograms(OrientationPrograms):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
@@ -104,20 +106,20 @@ class ArrayPrograms(OrientationPrograms):
             return (direction_x_a, direction_y_a)
 
         # a: polar angle in the r13 and r23 equations; its reference where it is free
-        direction_x_a = r13_of_a*sigma_roll
-        direction_y_a = r23_of_a*sigma_roll
+        direction_x_a = sigma_roll*r13_of_a
+        direction_y_a = sigma_roll*r23_of_a
         direction_x_a, direction_y_a = elsewhere(
             radius_a > 1e-11,
             (direction_x_a, direction_y_a),
             elsewhere_direction_x_a,
             (ref_a,),
         )
-        open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
-        near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
+        open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
+        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
         axis_a = nearest_period(offset_a + degrees(direction_y_a, direction_x_a), near_a)  # A: its turn
-        a_radius_of_b = radius_a*sigma_roll
-        open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
-        near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
+        a_radius_of_b = sigma_roll*radius_a
+        open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
+        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b = nearest_period(offset_b + degrees(a_radius_of_b, r33), near_b)  # B: its turn
         return (axis_a, axis_b), status
 
@@ -167,7 +169,7 @@ class ArrayPrograms(OrientationPrograms):
         )
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
@@ -210,12 +212,12 @@ class ArrayPrograms(OrientationPrograms):
             elsewhere_direction_x_a_positive,
             (ref_a,),
         )
-        open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
-        near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
+        open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
+        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
         # A: its turn
         axis_a_positive = nearest_period(offset_a + degrees(direction_y_a_positive, direction_x_a_positive), near_a)
-        open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
-        near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
+        open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
+        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b_positive = nearest_period(offset_b + degrees(radius_a, r33), near_b)  # B: its turn
         # A: its turn
         axis_a_negative = nearest_period(offset_a + degrees(direction_y_a_negative, direction_x_a_negative), near_a)

@@ -13,6 +13,8 @@ from softkin._array import (
     Real,
     Reals,
     Rotation,
+    Signs,
+    Turns,
     Vector,
     absolute,
     cos,
@@ -87,7 +89,7 @@ class ArrayPrograms(OrientationPrograms):
         )
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
@@ -119,8 +121,8 @@ class ArrayPrograms(OrientationPrograms):
             direction_y_c = sin(free_c)
             return (direction_x_c, direction_y_c)
 
-        direction_x_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations; its reference where it is free
-        direction_y_c = -r32*sigma_hand
+        direction_x_c = sigma_hand*r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
+        direction_y_c = -sigma_hand*r32
         direction_x_c, direction_y_c = elsewhere(
             radius_c > 1e-11,
             (direction_x_c, direction_y_c),
@@ -129,15 +131,15 @@ class ArrayPrograms(OrientationPrograms):
         )
         scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
         direction_y_a = -direction_x_c*r12 - direction_y_c*r11
-        open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
-        near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
+        open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
+        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
         axis_a = nearest_period(offset_a + degrees(direction_y_a, scaled_r22_before_c), near_a)  # A: its turn
-        c_radius_of_b = radius_c*sigma_hand
-        open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
-        near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
+        c_radius_of_b = sigma_hand*radius_c
+        open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
+        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b = nearest_period(offset_b + degrees(c_radius_of_b, r33), near_b)  # B: its turn
-        open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
-        near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
+        open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
+        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
         axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
         return (axis_a, axis_b, axis_c), status
 
@@ -178,7 +180,7 @@ class ArrayPrograms(OrientationPrograms):
         )
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
@@ -225,15 +227,15 @@ class ArrayPrograms(OrientationPrograms):
         )
         scaled_r22_before_c_down = direction_x_c_down*r22 + direction_y_c_down*r21
         direction_y_a_down = -direction_x_c_down*r12 - direction_y_c_down*r11
-        open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
-        near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
+        open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
+        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
         # A: its turn
         axis_a_down = nearest_period(offset_a + degrees(direction_y_a_down, scaled_r22_before_c_down), near_a)
-        open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
-        near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
+        open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
+        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b_down = nearest_period(offset_b + degrees(radius_c, r33), near_b)  # B: its turn
-        open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
-        near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
+        open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
+        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
         # C: its turn
         axis_c_down = nearest_period(offset_c + degrees(direction_y_c_down, direction_x_c_down), near_c)
         scaled_r22_before_c_up = direction_x_c_up*r22 + direction_y_c_up*r21

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.ac6_threeparallel import Constants
 
 
@@ -66,7 +66,7 @@ def unrolled(k: Constants) -> Unrolled:
     a2_minus_a3 = a2 - a3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
@@ -77,7 +77,7 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
             and -1e9 <= ref_a6 <= 1e9
         ):
-            return 8*(2.0,)
+            return 8*(2,)
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
@@ -91,7 +91,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
-                return 8*(3.0,)
+                return 8*(3,)
             ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
@@ -225,8 +225,9 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
                 # kept where the rest can be reached
-                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
                 else:
@@ -255,30 +256,30 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_up_down = free_a2
             angle_q2_down_down = free_a2
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_left_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_up_down - open_a2 < 179.999999999:
             axis_a2_left_up_down = nearest_period(axis_a2_left_up_down, open_a2)
         angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         axis_a3_left_up_down = offset_a3 + angle_q3_down/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_left_up_down - open_a3 < 179.999999999:
             axis_a3_left_up_down = nearest_period(axis_a3_left_up_down, open_a3)
         angle_with_q4_down = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)/DEGREE
         if not -180.000000001 <= axis_a4_left_up_down - open_a4 < 179.999999999:
             axis_a4_left_up_down = nearest_period(axis_a4_left_up_down, open_a4)
-        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
         axis_a5_left_down = offset_a5 + arctan2(radius_q6, cos_q5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_left_down - open_a5 < 179.999999999:
             axis_a5_left_down = nearest_period(axis_a5_left_down, open_a5)
-        open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
         axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_left_down - open_a6 < 179.999999999:
             axis_a6_left_down = nearest_period(axis_a6_left_down, open_a6)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         # A1: its turn
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
@@ -377,8 +378,9 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
                 # kept where the rest can be reached
-                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
                 else:
@@ -449,46 +451,46 @@ def unrolled(k: Constants) -> Unrolled:
             # limits of A2, limits of A3, limits of A4
             if axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6 and sine_square_q3_down >= -scale_q3_squared_times_rounding:
                 refusal_left_up_down = (
-                    0.0
+                    0
                     if (axis_a2_left_up_down >= lowest_a2) and (axis_a3_left_up_down >= lowest_a3) and (axis_a4_left_up_down >= lowest_a4) and (
                         axis_a2_left_up_down <= highest_a2
                     ) and (axis_a3_left_up_down <= highest_a3) and (axis_a4_left_up_down <= highest_a4)
-                    else 3.0
+                    else 3
                 )
                 refusal_left_down_down = (
-                    0.0
+                    0
                     if (axis_a2_left_down_down >= lowest_a2) and (axis_a3_left_down_down >= lowest_a3) and (axis_a4_left_down_down >= lowest_a4) and (
                         axis_a2_left_down_down <= highest_a2
                     ) and (axis_a3_left_down_down <= highest_a3) and (axis_a4_left_down_down <= highest_a4)
-                    else 3.0
+                    else 3
                 )
             else:
-                refusal_left_up_down = 3.0
-                refusal_left_down_down = 3.0
+                refusal_left_up_down = 3
+                refusal_left_down_down = 3
             # limits of A2, limits of A3, limits of A4
             if axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6 and sine_square_q3_up >= -scale_q3_squared_times_rounding:
                 refusal_left_up_up = (
-                    0.0
+                    0
                     if (axis_a2_left_up_up >= lowest_a2) and (axis_a3_left_up_up >= lowest_a3) and (axis_a4_left_up_up >= lowest_a4) and (
                         axis_a2_left_up_up <= highest_a2
                     ) and (axis_a3_left_up_up <= highest_a3) and (axis_a4_left_up_up <= highest_a4)
-                    else 3.0
+                    else 3
                 )
                 refusal_left_down_up = (
-                    0.0
+                    0
                     if (axis_a2_left_down_up >= lowest_a2) and (axis_a3_left_down_up >= lowest_a3) and (axis_a4_left_down_up >= lowest_a4) and (
                         axis_a2_left_down_up <= highest_a2
                     ) and (axis_a3_left_down_up <= highest_a3) and (axis_a4_left_down_up <= highest_a4)
-                    else 3.0
+                    else 3
                 )
             else:
-                refusal_left_up_up = 3.0
-                refusal_left_down_up = 3.0
+                refusal_left_up_up = 3
+                refusal_left_down_up = 3
         else:
-            refusal_left_up_down = 3.0
-            refusal_left_up_up = 3.0
-            refusal_left_down_down = 3.0
-            refusal_left_down_up = 3.0
+            refusal_left_up_down = 3
+            refusal_left_up_up = 3
+            refusal_left_down_down = 3
+            refusal_left_down_up = 3
         minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_right - r21*cos_q1_before_q1_for_q3_right
         r22_from_q1 = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
         # q6: direction and distance of a point
@@ -603,8 +605,9 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
                 # kept where the rest can be reached
-                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
                 else:
@@ -749,8 +752,9 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
                 # kept where the rest can be reached
-                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
                 else:
@@ -821,53 +825,53 @@ def unrolled(k: Constants) -> Unrolled:
             # limits of A2, limits of A3, limits of A4
             if axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6 and sine_square_q3_down >= -scale_q3_squared_times_rounding:
                 refusal_right_up_down = (
-                    0.0
+                    0
                     if (axis_a2_right_up_down >= lowest_a2) and (axis_a3_right_up_down >= lowest_a3) and (axis_a4_right_up_down >= lowest_a4) and (
                         axis_a2_right_up_down <= highest_a2
                     ) and (axis_a3_right_up_down <= highest_a3) and (axis_a4_right_up_down <= highest_a4)
-                    else 3.0
+                    else 3
                 )
                 refusal_right_down_down = (
-                    0.0
+                    0
                     if (axis_a2_right_down_down >= lowest_a2) and (axis_a3_right_down_down >= lowest_a3) and (axis_a4_right_down_down >= lowest_a4) and (
                         axis_a2_right_down_down <= highest_a2
                     ) and (axis_a3_right_down_down <= highest_a3) and (axis_a4_right_down_down <= highest_a4)
-                    else 3.0
+                    else 3
                 )
             else:
-                refusal_right_up_down = 3.0
-                refusal_right_down_down = 3.0
+                refusal_right_up_down = 3
+                refusal_right_down_down = 3
             # limits of A2, limits of A3, limits of A4
             if axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6 and sine_square_q3_up >= -scale_q3_squared_times_rounding:
                 refusal_right_up_up = (
-                    0.0
+                    0
                     if (axis_a2_right_up_up >= lowest_a2) and (axis_a3_right_up_up >= lowest_a3) and (axis_a4_right_up_up >= lowest_a4) and (
                         axis_a2_right_up_up <= highest_a2
                     ) and (axis_a3_right_up_up <= highest_a3) and (axis_a4_right_up_up <= highest_a4)
-                    else 3.0
+                    else 3
                 )
                 refusal_right_down_up = (
-                    0.0
+                    0
                     if (axis_a2_right_down_up >= lowest_a2) and (axis_a3_right_down_up >= lowest_a3) and (axis_a4_right_down_up >= lowest_a4) and (
                         axis_a2_right_down_up <= highest_a2
                     ) and (axis_a3_right_down_up <= highest_a3) and (axis_a4_right_down_up <= highest_a4)
-                    else 3.0
+                    else 3
                 )
             else:
-                refusal_right_up_up = 3.0
-                refusal_right_down_up = 3.0
+                refusal_right_up_up = 3
+                refusal_right_down_up = 3
         else:
-            refusal_right_up_down = 3.0
-            refusal_right_up_up = 3.0
-            refusal_right_down_down = 3.0
-            refusal_right_down_up = 3.0
+            refusal_right_up_down = 3
+            refusal_right_up_up = 3
+            refusal_right_down_down = 3
+            refusal_right_down_up = 3
         return (
             (
                 (
                     axis_a1_left, axis_a2_left_up_down, axis_a3_left_up_down, axis_a4_left_up_down, axis_a5_left_down,
                     axis_a6_left_down,
                 )
-                if refusal_left_up_down == 0.0
+                if refusal_left_up_down == 0
                 else refusal_left_up_down
             ),
             (
@@ -875,7 +879,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_right, axis_a2_right_up_down, axis_a3_right_up_down, axis_a4_right_up_down,
                     axis_a5_right_down, axis_a6_right_down,
                 )
-                if refusal_right_up_down == 0.0
+                if refusal_right_up_down == 0
                 else refusal_right_up_down
             ),
             (
@@ -883,7 +887,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_left, axis_a2_left_down_down, axis_a3_left_down_down, axis_a4_left_down_down,
                     axis_a5_left_down, axis_a6_left_down,
                 )
-                if refusal_left_down_down == 0.0
+                if refusal_left_down_down == 0
                 else refusal_left_down_down
             ),
             (
@@ -891,7 +895,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_right, axis_a2_right_down_down, axis_a3_right_down_down, axis_a4_right_down_down,
                     axis_a5_right_down, axis_a6_right_down,
                 )
-                if refusal_right_down_down == 0.0
+                if refusal_right_down_down == 0
                 else refusal_right_down_down
             ),
             (
@@ -899,7 +903,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_left, axis_a2_left_up_up, axis_a3_left_up_up, axis_a4_left_up_up, axis_a5_left_up,
                     axis_a6_left_up,
                 )
-                if refusal_left_up_up == 0.0
+                if refusal_left_up_up == 0
                 else refusal_left_up_up
             ),
             (
@@ -907,7 +911,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_right, axis_a2_right_up_up, axis_a3_right_up_up, axis_a4_right_up_up, axis_a5_right_up,
                     axis_a6_right_up,
                 )
-                if refusal_right_up_up == 0.0
+                if refusal_right_up_up == 0
                 else refusal_right_up_up
             ),
             (
@@ -915,7 +919,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_left, axis_a2_left_down_up, axis_a3_left_down_up, axis_a4_left_down_up, axis_a5_left_up,
                     axis_a6_left_up,
                 )
-                if refusal_left_down_up == 0.0
+                if refusal_left_down_up == 0
                 else refusal_left_down_up
             ),
             (
@@ -923,7 +927,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_right, axis_a2_right_down_up, axis_a3_right_down_up, axis_a4_right_down_up,
                     axis_a5_right_up, axis_a6_right_up,
                 )
-                if refusal_right_down_up == 0.0
+                if refusal_right_down_up == 0
                 else refusal_right_down_up
             ),
         )
@@ -1079,8 +1083,9 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
                 # kept where the rest can be reached
-                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
                 else:
@@ -1096,7 +1101,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_left_down = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        refusal_left_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*RADIAN
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
@@ -1212,8 +1217,9 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
                 # kept where the rest can be reached
-                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
                 else:
@@ -1229,7 +1235,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_left_up = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        refusal_left_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3  # q3: out of reach
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
@@ -1368,8 +1374,9 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
                 # kept where the rest can be reached
-                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
                 else:
@@ -1385,7 +1392,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_right_down = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        refusal_right_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*RADIAN
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
@@ -1501,8 +1508,9 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
                 # kept where the rest can be reached
-                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
                 else:
@@ -1518,7 +1526,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_right_up = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        refusal_right_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3  # q3: out of reach
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
@@ -1549,7 +1557,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_left, offset_a2 + angle_q2_left_up_down*RADIAN, offset_a3 + part_of_axis_a3_left_up_down,
                     axis_a4_left_up_down, axis_a5_left_down, axis_a6_left_down,
                 )
-                if refusal_left_down == 0.0
+                if refusal_left_down == 0
                 else None
             ),
             (
@@ -1558,7 +1566,7 @@ def unrolled(k: Constants) -> Unrolled:
                     offset_a3 + part_of_axis_a3_right_up_down, axis_a4_right_up_down, axis_a5_right_down,
                     axis_a6_right_down,
                 )
-                if refusal_right_down == 0.0
+                if refusal_right_down == 0
                 else None
             ),
             (
@@ -1567,7 +1575,7 @@ def unrolled(k: Constants) -> Unrolled:
                     offset_a3 - part_of_axis_a3_left_up_down, axis_a4_left_down_down, axis_a5_left_down,
                     axis_a6_left_down,
                 )
-                if refusal_left_down == 0.0
+                if refusal_left_down == 0
                 else None
             ),
             (
@@ -1576,7 +1584,7 @@ def unrolled(k: Constants) -> Unrolled:
                     offset_a3 - part_of_axis_a3_right_up_down, axis_a4_right_down_down, axis_a5_right_down,
                     axis_a6_right_down,
                 )
-                if refusal_right_down == 0.0
+                if refusal_right_down == 0
                 else None
             ),
             (
@@ -1584,7 +1592,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_left, offset_a2 + angle_q2_left_up_up*RADIAN, offset_a3 + part_of_axis_a3_left_up_up,
                     axis_a4_left_up_up, axis_a5_left_up, axis_a6_left_up,
                 )
-                if refusal_left_up == 0.0
+                if refusal_left_up == 0
                 else None
             ),
             (
@@ -1592,7 +1600,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_right, offset_a2 + angle_q2_right_up_up*RADIAN, offset_a3 + part_of_axis_a3_right_up_up,
                     axis_a4_right_up_up, axis_a5_right_up, axis_a6_right_up,
                 )
-                if refusal_right_up == 0.0
+                if refusal_right_up == 0
                 else None
             ),
             (
@@ -1600,7 +1608,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_left, offset_a2 + angle_q2_left_down_up*RADIAN, offset_a3 - part_of_axis_a3_left_up_up,
                     axis_a4_left_down_up, axis_a5_left_up, axis_a6_left_up,
                 )
-                if refusal_left_up == 0.0
+                if refusal_left_up == 0
                 else None
             ),
             (
@@ -1608,12 +1616,12 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_right, offset_a2 + angle_q2_right_down_up*RADIAN, offset_a3 - part_of_axis_a3_right_up_up,
                     axis_a4_right_down_up, axis_a5_right_up, axis_a6_right_up,
                 )
-                if refusal_right_up == 0.0
+                if refusal_right_up == 0
                 else None
             ),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         sigma_shoulder, sigma_elbow, sigma_wrist = signs
@@ -1648,12 +1656,12 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
         # q6: direction and distance of a point
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
-        q6_radius_of_q5 = radius_q6*sigma_wrist
+        q6_radius_of_q5 = sigma_wrist*radius_q6
         # its reference where it is free
         if radius_q6 > 1e-11:
-            along_q6 = minus_r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
+            along_q6 = sigma_wrist*minus_r21_from_q1  # q6: polar angle in the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6/radius_q6
-            sin_q6_before_q6_of_q3 = (r22_from_q1*sigma_wrist)/radius_q6
+            sin_q6_before_q6_of_q3 = (sigma_wrist*r22_from_q1)/radius_q6
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3 = cos(free_a6)
@@ -1738,8 +1746,9 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
                 # kept where the rest can be reached
-                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3
                     sin_q6 = sin_q6_before_q6_of_q3
                 else:

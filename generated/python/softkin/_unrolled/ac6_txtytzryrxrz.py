@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.ac6_txtytzryrxrz import Constants
 
 
@@ -44,7 +44,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a6 = k.single_a6
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
@@ -54,22 +54,22 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a4 <= 1e9
             and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9
         ):
-            return 2*(2.0,)
+            return 2*(2,)
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return 2*(3.0,)
+            return 2*(3,)
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         axis_a2 = offset_a2 + wrist_y
         # limits of A2
         if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return 2*(3.0,)
+            return 2*(3,)
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
         # limits of A3
         if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return 2*(3.0,)
+            return 2*(3,)
         radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
         # a4: polar angle in the r33 and r13 equations; its reference where it is free
         if radius_a4 > 1e-11:
@@ -81,28 +81,28 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a4_upright = sin(free_a4)
             direction_x_a4_flipped = direction_x_a4_upright
             direction_y_a4_flipped = direction_y_a4_upright
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
         # A4: its turn
         axis_a4_upright = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_upright - open_a4 < 179.999999999:
             axis_a4_upright = nearest_period(axis_a4_upright, open_a4)
-        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
         axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_upright - open_a5 < 179.999999999:
             axis_a5_upright = nearest_period(axis_a5_upright, open_a5)
         scaled_r11_from_a4 = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
         direction_y_a6 = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
-        open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
         axis_a6_upright = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_upright - open_a6 < 179.999999999:
             axis_a6_upright = nearest_period(axis_a6_upright, open_a6)
         # limits of A4, limits of A5, limits of A6
         refusal_upright = (
-            0.0
+            0
             if (axis_a4_upright >= lowest_a4) and (axis_a5_upright >= lowest_a5) and (axis_a6_upright >= lowest_a6) and (
                 axis_a4_upright <= highest_a4
             ) and (axis_a5_upright <= highest_a5) and (axis_a6_upright <= highest_a6)
-            else 3.0
+            else 3
         )
         if radius_a4 > 1e-11:
             direction_of_axis_a4 = 180.0 + axis_a4_upright
@@ -127,21 +127,21 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a6_flipped = nearest_period(axis_a6_flipped, open_a6)
         # limits of A4, limits of A5, limits of A6
         refusal_flipped = (
-            0.0
+            0
             if (axis_a4_flipped >= lowest_a4) and (axis_a5_flipped >= lowest_a5) and (axis_a6_flipped >= lowest_a6) and (
                 axis_a4_flipped <= highest_a4
             ) and (axis_a5_flipped <= highest_a5) and (axis_a6_flipped <= highest_a6)
-            else 3.0
+            else 3
         )
         return (
             (
                 (axis_a1, axis_a2, axis_a3, axis_a4_upright, axis_a5_upright, axis_a6_upright)
-                if refusal_upright == 0.0
+                if refusal_upright == 0
                 else refusal_upright
             ),
             (
                 (axis_a1, axis_a2, axis_a3, axis_a4_flipped, axis_a5_flipped, axis_a6_flipped)
-                if refusal_flipped == 0.0
+                if refusal_flipped == 0
                 else refusal_flipped
             ),
         )
@@ -193,7 +193,7 @@ def unrolled(k: Constants) -> Unrolled:
             ),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         (sigma_wrist,) = signs
@@ -204,11 +204,11 @@ def unrolled(k: Constants) -> Unrolled:
         radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
         # a4: polar angle in the r33 and r13 equations; its reference where it is free
         if radius_a4 > 1e-11:
-            direction_x_a4 = r33*sigma_wrist
-            direction_y_a4 = r13*sigma_wrist
+            direction_x_a4 = sigma_wrist*r33
+            direction_y_a4 = sigma_wrist*r13
             if radius_a4 > 0.1:
-                scaled_r11_from_a4 = r22*sigma_wrist
-                direction_y_a6 = r21*sigma_wrist
+                scaled_r11_from_a4 = sigma_wrist*r22
+                direction_y_a6 = sigma_wrist*r21
             else:
                 scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
                 direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
@@ -221,12 +221,12 @@ def unrolled(k: Constants) -> Unrolled:
         if no_offsets:
             return (
                 wrist_x, wrist_y, wrist_z, arctan2(direction_y_a4, direction_x_a4)*RADIAN,
-                arctan2(-r23, radius_a4*sigma_wrist)*RADIAN, arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN,
+                arctan2(-r23, sigma_wrist*radius_a4)*RADIAN, arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN,
             )
         return (
             offset_a1 + wrist_x, offset_a2 + wrist_y, offset_a3 + wrist_z,
             offset_a4 + arctan2(direction_y_a4, direction_x_a4)*RADIAN,
-            offset_a5 + arctan2(-r23, radius_a4*sigma_wrist)*RADIAN,
+            offset_a5 + arctan2(-r23, sigma_wrist*radius_a4)*RADIAN,
             offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN,
         )
 

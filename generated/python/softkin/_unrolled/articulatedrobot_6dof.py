@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.articulatedrobot_6dof import Constants
 
 
@@ -66,7 +66,7 @@ def unrolled(k: Constants) -> Unrolled:
     a2_minus_effective_q3 = a2 - effective_q3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
@@ -77,7 +77,7 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
             and -1e9 <= ref_a6 <= 1e9
         ):
-            return 8*(2.0,)
+            return 8*(2,)
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
@@ -91,7 +91,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
-                return 8*(3.0,)
+                return 8*(3,)
             ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
@@ -153,13 +153,13 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_q4_down = sin(free_a4)
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
         # A4: its turn
         axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_front_down_down - open_a4 < 179.999999999:
             axis_a4_front_down_down = nearest_period(axis_a4_front_down_down, open_a4)
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
         axis_a5_front_down_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_front_down_down - open_a5 < 179.999999999:
             axis_a5_front_down_down = nearest_period(axis_a5_front_down_down, open_a5)
@@ -171,22 +171,22 @@ def unrolled(k: Constants) -> Unrolled:
         r12_from_q1 = r12*cos_q1_before_q1_for_q3_front + r22*sin_q1_before_q1_for_q3_front
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
-        open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
         # A6: its turn
         axis_a6_front_down_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
         )
         if not -180.000000001 <= axis_a6_front_down_down - open_a6 < 179.999999999:
             axis_a6_front_down_down = nearest_period(axis_a6_front_down_down, open_a6)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
             axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
             axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         # A1: its turn
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
@@ -278,46 +278,46 @@ def unrolled(k: Constants) -> Unrolled:
             # limits of A4, limits of A5, limits of A6
             if axis_a2_front_down >= lowest_a2 and axis_a3_front_down >= lowest_a3 and axis_a2_front_down <= highest_a2 and axis_a3_front_down <= highest_a3:
                 refusal_front_down_down = (
-                    0.0
+                    0
                     if (axis_a4_front_down_down >= lowest_a4) and (axis_a5_front_down_down >= lowest_a5) and (axis_a6_front_down_down >= lowest_a6) and (
                         axis_a4_front_down_down <= highest_a4
                     ) and (axis_a5_front_down_down <= highest_a5) and (axis_a6_front_down_down <= highest_a6)
-                    else 3.0
+                    else 3
                 )
                 refusal_front_down_up = (
-                    0.0
+                    0
                     if (axis_a4_front_down_up >= lowest_a4) and (axis_a5_front_down_up >= lowest_a5) and (axis_a6_front_down_up >= lowest_a6) and (
                         axis_a4_front_down_up <= highest_a4
                     ) and (axis_a5_front_down_up <= highest_a5) and (axis_a6_front_down_up <= highest_a6)
-                    else 3.0
+                    else 3
                 )
             else:
-                refusal_front_down_down = 3.0
-                refusal_front_down_up = 3.0
+                refusal_front_down_down = 3
+                refusal_front_down_up = 3
             # limits of A4, limits of A5, limits of A6
             if axis_a2_front_up >= lowest_a2 and axis_a3_front_up >= lowest_a3 and axis_a2_front_up <= highest_a2 and axis_a3_front_up <= highest_a3:
                 refusal_front_up_down = (
-                    0.0
+                    0
                     if (axis_a4_front_up_down >= lowest_a4) and (axis_a5_front_up_down >= lowest_a5) and (axis_a6_front_up_down >= lowest_a6) and (
                         axis_a4_front_up_down <= highest_a4
                     ) and (axis_a5_front_up_down <= highest_a5) and (axis_a6_front_up_down <= highest_a6)
-                    else 3.0
+                    else 3
                 )
                 refusal_front_up_up = (
-                    0.0
+                    0
                     if (axis_a4_front_up_up >= lowest_a4) and (axis_a5_front_up_up >= lowest_a5) and (axis_a6_front_up_up >= lowest_a6) and (
                         axis_a4_front_up_up <= highest_a4
                     ) and (axis_a5_front_up_up <= highest_a5) and (axis_a6_front_up_up <= highest_a6)
-                    else 3.0
+                    else 3
                 )
             else:
-                refusal_front_up_down = 3.0
-                refusal_front_up_up = 3.0
+                refusal_front_up_down = 3
+                refusal_front_up_up = 3
         else:
-            refusal_front_down_down = 3.0
-            refusal_front_down_up = 3.0
-            refusal_front_up_down = 3.0
-            refusal_front_up_up = 3.0
+            refusal_front_down_down = 3
+            refusal_front_down_up = 3
+            refusal_front_up_down = 3
+            refusal_front_up_up = 3
         r13_from_q1 = r13*cos_q1_before_q1_for_q3_back + r23*sin_q1_before_q1_for_q3_back
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -479,53 +479,53 @@ def unrolled(k: Constants) -> Unrolled:
             # limits of A4, limits of A5, limits of A6
             if axis_a2_back_down >= lowest_a2 and axis_a3_back_down >= lowest_a3 and axis_a2_back_down <= highest_a2 and axis_a3_back_down <= highest_a3:
                 refusal_back_down_down = (
-                    0.0
+                    0
                     if (axis_a4_back_down_down >= lowest_a4) and (axis_a5_back_down_down >= lowest_a5) and (axis_a6_back_down_down >= lowest_a6) and (
                         axis_a4_back_down_down <= highest_a4
                     ) and (axis_a5_back_down_down <= highest_a5) and (axis_a6_back_down_down <= highest_a6)
-                    else 3.0
+                    else 3
                 )
                 refusal_back_down_up = (
-                    0.0
+                    0
                     if (axis_a4_back_down_up >= lowest_a4) and (axis_a5_back_down_up >= lowest_a5) and (axis_a6_back_down_up >= lowest_a6) and (
                         axis_a4_back_down_up <= highest_a4
                     ) and (axis_a5_back_down_up <= highest_a5) and (axis_a6_back_down_up <= highest_a6)
-                    else 3.0
+                    else 3
                 )
             else:
-                refusal_back_down_down = 3.0
-                refusal_back_down_up = 3.0
+                refusal_back_down_down = 3
+                refusal_back_down_up = 3
             # limits of A4, limits of A5, limits of A6
             if axis_a2_back_up >= lowest_a2 and axis_a3_back_up >= lowest_a3 and axis_a2_back_up <= highest_a2 and axis_a3_back_up <= highest_a3:
                 refusal_back_up_down = (
-                    0.0
+                    0
                     if (axis_a4_back_up_down >= lowest_a4) and (axis_a5_back_up_down >= lowest_a5) and (axis_a6_back_up_down >= lowest_a6) and (
                         axis_a4_back_up_down <= highest_a4
                     ) and (axis_a5_back_up_down <= highest_a5) and (axis_a6_back_up_down <= highest_a6)
-                    else 3.0
+                    else 3
                 )
                 refusal_back_up_up = (
-                    0.0
+                    0
                     if (axis_a4_back_up_up >= lowest_a4) and (axis_a5_back_up_up >= lowest_a5) and (axis_a6_back_up_up >= lowest_a6) and (
                         axis_a4_back_up_up <= highest_a4
                     ) and (axis_a5_back_up_up <= highest_a5) and (axis_a6_back_up_up <= highest_a6)
-                    else 3.0
+                    else 3
                 )
             else:
-                refusal_back_up_down = 3.0
-                refusal_back_up_up = 3.0
+                refusal_back_up_down = 3
+                refusal_back_up_up = 3
         else:
-            refusal_back_down_down = 3.0
-            refusal_back_down_up = 3.0
-            refusal_back_up_down = 3.0
-            refusal_back_up_up = 3.0
+            refusal_back_down_down = 3
+            refusal_back_down_up = 3
+            refusal_back_up_down = 3
+            refusal_back_up_up = 3
         return (
             (
                 (
                     axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_down,
                     axis_a5_front_down_down, axis_a6_front_down_down,
                 )
-                if refusal_front_down_down == 0.0
+                if refusal_front_down_down == 0
                 else refusal_front_down_down
             ),
             (
@@ -533,7 +533,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_down,
                     axis_a5_back_down_down, axis_a6_back_down_down,
                 )
-                if refusal_back_down_down == 0.0
+                if refusal_back_down_down == 0
                 else refusal_back_down_down
             ),
             (
@@ -541,7 +541,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_down, axis_a5_front_up_down,
                     axis_a6_front_up_down,
                 )
-                if refusal_front_up_down == 0.0
+                if refusal_front_up_down == 0
                 else refusal_front_up_down
             ),
             (
@@ -549,7 +549,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_down, axis_a5_back_up_down,
                     axis_a6_back_up_down,
                 )
-                if refusal_back_up_down == 0.0
+                if refusal_back_up_down == 0
                 else refusal_back_up_down
             ),
             (
@@ -557,7 +557,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_up,
                     axis_a5_front_down_up, axis_a6_front_down_up,
                 )
-                if refusal_front_down_up == 0.0
+                if refusal_front_down_up == 0
                 else refusal_front_down_up
             ),
             (
@@ -565,7 +565,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_up, axis_a5_back_down_up,
                     axis_a6_back_down_up,
                 )
-                if refusal_back_down_up == 0.0
+                if refusal_back_down_up == 0
                 else refusal_back_down_up
             ),
             (
@@ -573,7 +573,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_up, axis_a5_front_up_up,
                     axis_a6_front_up_up,
                 )
-                if refusal_front_up_up == 0.0
+                if refusal_front_up_up == 0
                 else refusal_front_up_up
             ),
             (
@@ -581,7 +581,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_up, axis_a5_back_up_up,
                     axis_a6_back_up_up,
                 )
-                if refusal_back_up_up == 0.0
+                if refusal_back_up_up == 0
                 else refusal_back_up_up
             ),
         )
@@ -615,7 +615,7 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_front = 0.0 if sine_square_q3 >= -swing_scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        refusal_front = 0 if sine_square_q3 >= -swing_scale_q3_squared_times_rounding else 3  # q3: out of reach
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             d3_times_wrist_y = d3*wrist_y
@@ -769,7 +769,7 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_back = 0.0 if sine_square_q3 >= -swing_scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        refusal_back = 0 if sine_square_q3 >= -swing_scale_q3_squared_times_rounding else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
@@ -903,7 +903,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_down,
                     axis_a5_front_down_down, axis_a6_front_down_down,
                 )
-                if refusal_front == 0.0
+                if refusal_front == 0
                 else None
             ),
             (
@@ -911,7 +911,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_down,
                     axis_a5_back_down_down, axis_a6_back_down_down,
                 )
-                if refusal_back == 0.0
+                if refusal_back == 0
                 else None
             ),
             (
@@ -919,7 +919,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_down, axis_a5_front_up_down,
                     axis_a6_front_up_down,
                 )
-                if refusal_front == 0.0
+                if refusal_front == 0
                 else None
             ),
             (
@@ -927,7 +927,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_down, axis_a5_back_up_down,
                     axis_a6_back_up_down,
                 )
-                if refusal_back == 0.0
+                if refusal_back == 0
                 else None
             ),
             (
@@ -935,7 +935,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_front, axis_a2_front_down, axis_a3_front_down, direction_of_axis_a4_front_down_up,
                     offset_a5_times_2 - axis_a5_front_down_down, direction_of_axis_a6_front_down_up,
                 )
-                if refusal_front == 0.0
+                if refusal_front == 0
                 else None
             ),
             (
@@ -943,7 +943,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_back, axis_a2_back_down, axis_a3_back_down, direction_of_axis_a4_back_down_up,
                     offset_a5_times_2 - axis_a5_back_down_down, direction_of_axis_a6_back_down_up,
                 )
-                if refusal_back == 0.0
+                if refusal_back == 0
                 else None
             ),
             (
@@ -951,7 +951,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_front, axis_a2_front_up, axis_a3_front_up, direction_of_axis_a4_front_up_up,
                     offset_a5_times_2 - axis_a5_front_up_down, direction_of_axis_a6_front_up_up,
                 )
-                if refusal_front == 0.0
+                if refusal_front == 0
                 else None
             ),
             (
@@ -959,12 +959,12 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_back, axis_a2_back_up, axis_a3_back_up, direction_of_axis_a4_back_up_up,
                     offset_a5_times_2 - axis_a5_back_up_down, direction_of_axis_a6_back_up_up,
                 )
-                if refusal_back == 0.0
+                if refusal_back == 0
                 else None
             ),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         sigma_arm, sigma_elbow, sigma_hand = signs
@@ -1025,8 +1025,8 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
-            direction_x_q4 = minus_r13_from_q123*sigma_hand
-            direction_y_q4 = r23_from_q1*sigma_hand
+            direction_x_q4 = sigma_hand*minus_r13_from_q123
+            direction_y_q4 = sigma_hand*r23_from_q1
             minus_scaled_r21_from_q1234 = (
                 sigma_hand*((r12*cos_q1_before_q1_for_q3 + r22*sin_q1_before_q1_for_q3)*cos_q23 + r32*sin_q23)
             )
@@ -1036,8 +1036,8 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
-                direction_x_q4 = minus_r13_from_q123*sigma_hand
-                direction_y_q4 = r23_from_q1*sigma_hand
+                direction_x_q4 = sigma_hand*minus_r13_from_q123
+                direction_y_q4 = sigma_hand*r23_from_q1
             else:
                 free_a4 = (ref_a4 - offset_a4)*DEGREE
                 direction_x_q4 = cos(free_a4)
@@ -1054,13 +1054,13 @@ def unrolled(k: Constants) -> Unrolled:
         if no_offsets:
             return (
                 arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*RADIAN, angle_q2*RADIAN, angle_q3*RADIAN,
-                arctan2(direction_y_q4, direction_x_q4)*RADIAN, arctan2(radius_q4*sigma_hand, cos_q5)*RADIAN,
+                arctan2(direction_y_q4, direction_x_q4)*RADIAN, arctan2(sigma_hand*radius_q4, cos_q5)*RADIAN,
                 180.0 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN,
             )
         return (
             offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*RADIAN, offset_a2 + angle_q2*RADIAN,
             offset_a3 + angle_q3*RADIAN, offset_a4 + arctan2(direction_y_q4, direction_x_q4)*RADIAN,
-            offset_a5 + arctan2(radius_q4*sigma_hand, cos_q5)*RADIAN,
+            offset_a5 + arctan2(sigma_hand*radius_q4, cos_q5)*RADIAN,
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN,
         )
 

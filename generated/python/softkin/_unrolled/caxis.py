@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.caxis import Constants
 
 
@@ -22,26 +22,26 @@ def unrolled(k: Constants) -> Unrolled:
     single_c = k.single_c
     no_offsets = not any((offset_c,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         (ref_c,) = reference
         # numbers of reasonable size
         if not (-1e9 <= ref_c <= 1e9):
-            return (2.0,)
+            return (2,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return (3.0,)
-        open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
+            return (3,)
+        open_c = mid_c if single_c else ref_c  # C: where its turn is open
         axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c - open_c < 179.999999999:
             axis_c = nearest_period(axis_c, open_c)
         # limits of C
         if not (axis_c >= lowest_c and axis_c <= highest_c):
-            return (3.0,)
+            return (3,)
         return (
             (axis_c,),
         )
@@ -59,7 +59,7 @@ def unrolled(k: Constants) -> Unrolled:
             (offset_c + arctan2(heading_across, heading_along)*RADIAN,),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept

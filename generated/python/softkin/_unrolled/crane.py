@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.crane import Constants
 
 
@@ -30,7 +30,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle = 1e-11*machine_scale
     no_offsets = not any((offset_phi, offset_r, offset_theta,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         _, ref_theta, ref_phi = reference
@@ -39,7 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_phi <= 1e9
             and -1e9 <= ref_theta <= 1e9
         ):
-            return (2.0,)
+            return (2,)
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         # its reference where it is free
         if radius_theta > machine_scale_times_free_angle:
@@ -49,18 +49,18 @@ def unrolled(k: Constants) -> Unrolled:
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        open_theta = mid_theta if single_theta > 0.0 else ref_theta  # Theta: where its turn is open
+        open_theta = mid_theta if single_theta else ref_theta  # Theta: where its turn is open
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
         if not -180.000000001 <= axis_theta - open_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, open_theta)
         # limits of Theta
         if not (axis_theta >= lowest_theta and axis_theta <= highest_theta):
-            return (3.0,)
+            return (3,)
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
         # limits of R
         if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return (3.0,)
+            return (3,)
         # its reference where it is free
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
@@ -72,7 +72,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         # limits of Phi
         if not (axis_phi >= lowest_phi and axis_phi <= highest_phi):
-            return (3.0,)
+            return (3,)
         return (
             (axis_r, axis_theta, axis_phi),
         )
@@ -106,7 +106,7 @@ def unrolled(k: Constants) -> Unrolled:
             ),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         _, ref_theta, ref_phi = 3*(0.0,) if reference is None else reference

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.delta_p3c_type3 import Constants
 
 
@@ -71,7 +71,7 @@ def unrolled(k: Constants) -> Unrolled:
     constant_part_7 = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2, ref_a3 = reference
@@ -80,14 +80,14 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
-            return 8*(2.0,)
+            return 8*(2,)
         span_1_x = x - constant_part  # rod 1
         span_1_y = y - constant_part_2  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
-            return 8*(3.0,)
+            return 8*(3,)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # square of the third side
@@ -102,14 +102,14 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return 8*(3.0,)
+            return 8*(3,)
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = y - constant_part_4  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
-            return 8*(3.0,)
+            return 8*(3,)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # square of the third side
@@ -124,14 +124,14 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return 8*(3.0,)
+            return 8*(3,)
         span_3_x = x - constant_part_5  # rod 3
         span_3_y = y - constant_part_6  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
-            return 8*(3.0,)
+            return 8*(3,)
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # square of the third side
@@ -146,7 +146,7 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-            return 8*(3.0,)
+            return 8*(3,)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
@@ -189,15 +189,15 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a3 = -along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
         minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
         rod_3_z_outward = minus_pivot_3_z + z
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_outward - open_a3 < 179.999999999:
             axis_a3_outward = nearest_period(axis_a3_outward, open_a3)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
             axis_a2_outward = nearest_period(axis_a2_outward, open_a2)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
@@ -241,9 +241,9 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
                         )
                     )
-                    refusal_outward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
+                    refusal_outward_outward_outward_2 = 0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3
                 else:
-                    refusal_outward_outward_outward_2 = 3.0
+                    refusal_outward_outward_outward_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_inward = (
@@ -254,12 +254,12 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
                         )
                     )
-                    refusal_outward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
+                    refusal_outward_outward_inward_2 = 0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3
                 else:
-                    refusal_outward_outward_inward_2 = 3.0
+                    refusal_outward_outward_inward_2 = 3
             else:
-                refusal_outward_outward_outward_2 = 3.0
-                refusal_outward_outward_inward_2 = 3.0
+                refusal_outward_outward_outward_2 = 3
+                refusal_outward_outward_inward_2 = 3
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
@@ -271,9 +271,9 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
                         )
                     )
-                    refusal_outward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
+                    refusal_outward_inward_outward_2 = 0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3
                 else:
-                    refusal_outward_inward_outward_2 = 3.0
+                    refusal_outward_inward_outward_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_inward = (
@@ -284,17 +284,17 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
                         )
                     )
-                    refusal_outward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
+                    refusal_outward_inward_inward_2 = 0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3
                 else:
-                    refusal_outward_inward_inward_2 = 3.0
+                    refusal_outward_inward_inward_2 = 3
             else:
-                refusal_outward_inward_outward_2 = 3.0
-                refusal_outward_inward_inward_2 = 3.0
+                refusal_outward_inward_outward_2 = 3
+                refusal_outward_inward_inward_2 = 3
         else:
-            refusal_outward_outward_outward_2 = 3.0
-            refusal_outward_outward_inward_2 = 3.0
-            refusal_outward_inward_outward_2 = 3.0
-            refusal_outward_inward_inward_2 = 3.0
+            refusal_outward_outward_outward_2 = 3
+            refusal_outward_outward_inward_2 = 3
+            refusal_outward_inward_outward_2 = 3
+            refusal_outward_inward_inward_2 = 3
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 + sin_swing_a1_times_z_by_divisor_a1
         sin_a1 = along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
@@ -318,9 +318,9 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
                         )
                     )
-                    refusal_inward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
+                    refusal_inward_outward_outward_2 = 0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3
                 else:
-                    refusal_inward_outward_outward_2 = 3.0
+                    refusal_inward_outward_outward_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_inward = (
@@ -331,12 +331,12 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
                         )
                     )
-                    refusal_inward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
+                    refusal_inward_outward_inward_2 = 0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3
                 else:
-                    refusal_inward_outward_inward_2 = 3.0
+                    refusal_inward_outward_inward_2 = 3
             else:
-                refusal_inward_outward_outward_2 = 3.0
-                refusal_inward_outward_inward_2 = 3.0
+                refusal_inward_outward_outward_2 = 3
+                refusal_inward_outward_inward_2 = 3
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
@@ -348,9 +348,9 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
                         )
                     )
-                    refusal_inward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
+                    refusal_inward_inward_outward_2 = 0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3
                 else:
-                    refusal_inward_inward_outward_2 = 3.0
+                    refusal_inward_inward_outward_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_inward = (
@@ -361,56 +361,56 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
                         )
                     )
-                    refusal_inward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
+                    refusal_inward_inward_inward_2 = 0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3
                 else:
-                    refusal_inward_inward_inward_2 = 3.0
+                    refusal_inward_inward_inward_2 = 3
             else:
-                refusal_inward_inward_outward_2 = 3.0
-                refusal_inward_inward_inward_2 = 3.0
+                refusal_inward_inward_outward_2 = 3
+                refusal_inward_inward_inward_2 = 3
         else:
-            refusal_inward_outward_outward_2 = 3.0
-            refusal_inward_outward_inward_2 = 3.0
-            refusal_inward_inward_outward_2 = 3.0
-            refusal_inward_inward_inward_2 = 3.0
+            refusal_inward_outward_outward_2 = 3
+            refusal_inward_outward_inward_2 = 3
+            refusal_inward_inward_outward_2 = 3
+            refusal_inward_inward_inward_2 = 3
         return (
             (
                 (axis_a1_outward, axis_a2_outward, axis_a3_outward)
-                if refusal_outward_outward_outward_2 == 0.0
+                if refusal_outward_outward_outward_2 == 0
                 else refusal_outward_outward_outward_2
             ),
             (
                 (axis_a1_inward, axis_a2_outward, axis_a3_outward)
-                if refusal_inward_outward_outward_2 == 0.0
+                if refusal_inward_outward_outward_2 == 0
                 else refusal_inward_outward_outward_2
             ),
             (
                 (axis_a1_outward, axis_a2_inward, axis_a3_outward)
-                if refusal_outward_inward_outward_2 == 0.0
+                if refusal_outward_inward_outward_2 == 0
                 else refusal_outward_inward_outward_2
             ),
             (
                 (axis_a1_inward, axis_a2_inward, axis_a3_outward)
-                if refusal_inward_inward_outward_2 == 0.0
+                if refusal_inward_inward_outward_2 == 0
                 else refusal_inward_inward_outward_2
             ),
             (
                 (axis_a1_outward, axis_a2_outward, axis_a3_inward)
-                if refusal_outward_outward_inward_2 == 0.0
+                if refusal_outward_outward_inward_2 == 0
                 else refusal_outward_outward_inward_2
             ),
             (
                 (axis_a1_inward, axis_a2_outward, axis_a3_inward)
-                if refusal_inward_outward_inward_2 == 0.0
+                if refusal_inward_outward_inward_2 == 0
                 else refusal_inward_outward_inward_2
             ),
             (
                 (axis_a1_outward, axis_a2_inward, axis_a3_inward)
-                if refusal_outward_inward_inward_2 == 0.0
+                if refusal_outward_inward_inward_2 == 0
                 else refusal_outward_inward_inward_2
             ),
             (
                 (axis_a1_inward, axis_a2_inward, axis_a3_inward)
-                if refusal_inward_inward_inward_2 == 0.0
+                if refusal_inward_inward_inward_2 == 0
                 else refusal_inward_inward_inward_2
             ),
         )
@@ -541,7 +541,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_outward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
@@ -562,7 +562,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 + sin_swing_a2_times_z_by_divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
@@ -581,7 +581,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         type2_rods_coplanar = (
             constant_part_7
@@ -592,7 +592,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 + sin_swing_a1_times_z_by_divisor_a1
         pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x = x - pivot_1_x
@@ -610,7 +610,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         type2_rods_coplanar = (
             constant_part_7
@@ -621,7 +621,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             constant_part_7
             *(
@@ -631,7 +631,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             constant_part_7
             *(
@@ -641,19 +641,19 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
-            ((axis_a1_outward, axis_a2_outward, axis_a3_outward) if refusal_outward_outward_outward == 0.0 else None),
-            ((axis_a1_inward, axis_a2_outward, axis_a3_outward) if refusal_inward_outward_outward == 0.0 else None),
-            ((axis_a1_outward, axis_a2_inward, axis_a3_outward) if refusal_outward_inward_outward == 0.0 else None),
-            ((axis_a1_inward, axis_a2_inward, axis_a3_outward) if refusal_inward_inward_outward == 0.0 else None),
-            ((axis_a1_outward, axis_a2_outward, axis_a3_inward) if refusal_outward_outward_inward == 0.0 else None),
-            ((axis_a1_inward, axis_a2_outward, axis_a3_inward) if refusal_inward_outward_inward == 0.0 else None),
-            ((axis_a1_outward, axis_a2_inward, axis_a3_inward) if refusal_outward_inward_inward == 0.0 else None),
-            ((axis_a1_inward, axis_a2_inward, axis_a3_inward) if refusal_inward_inward_inward == 0.0 else None),
+            ((axis_a1_outward, axis_a2_outward, axis_a3_outward) if refusal_outward_outward_outward == 0 else None),
+            ((axis_a1_inward, axis_a2_outward, axis_a3_outward) if refusal_inward_outward_outward == 0 else None),
+            ((axis_a1_outward, axis_a2_inward, axis_a3_outward) if refusal_outward_inward_outward == 0 else None),
+            ((axis_a1_inward, axis_a2_inward, axis_a3_outward) if refusal_inward_inward_outward == 0 else None),
+            ((axis_a1_outward, axis_a2_outward, axis_a3_inward) if refusal_outward_outward_inward == 0 else None),
+            ((axis_a1_inward, axis_a2_outward, axis_a3_inward) if refusal_inward_outward_inward == 0 else None),
+            ((axis_a1_outward, axis_a2_inward, axis_a3_inward) if refusal_outward_inward_inward == 0 else None),
+            ((axis_a1_inward, axis_a2_inward, axis_a3_inward) if refusal_inward_inward_inward == 0 else None),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Unrolled
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.gantry3 import Constants
 
 
@@ -25,24 +25,24 @@ def unrolled(k: Constants) -> Unrolled:
     offset_z = k.offset_z
     no_offsets = not any((offset_x, offset_y, offset_z,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return (2.0,)
+            return (2,)
         axis_x = offset_x + x
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
-            return (3.0,)
+            return (3,)
         axis_y = offset_y + y
         # limits of Y
         if not (axis_y >= lowest_y and axis_y <= highest_y):
-            return (3.0,)
+            return (3,)
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return (3.0,)
+            return (3,)
         return (
             (axis_x, axis_y, axis_z),
         )
@@ -54,7 +54,7 @@ def unrolled(k: Constants) -> Unrolled:
             (offset_x + x, offset_y + y, offset_z + z),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         if no_offsets:

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.gantrycutter3 import Constants
 
 
@@ -32,40 +32,40 @@ def unrolled(k: Constants) -> Unrolled:
     single_r = k.single_r
     no_offsets = not any((offset_r, offset_x, offset_y, offset_z,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         _, _, _, ref_r = reference
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_r <= 1e9):
-            return (2.0,)
+            return (2,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return (3.0,)
+            return (3,)
         direction_y_r = direction_r*heading_across
-        open_r = mid_r if single_r > 0.0 else ref_r  # R: where its turn is open
+        open_r = mid_r if single_r else ref_r  # R: where its turn is open
         axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0)/DEGREE  # R: its turn
         if not -180.000000001 <= axis_r - open_r < 179.999999999:
             axis_r = nearest_period(axis_r, open_r)
         # limits of R
         if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return (3.0,)
+            return (3,)
         axis_x = offset_x + x
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
-            return (3.0,)
+            return (3,)
         axis_y = offset_y + y
         # limits of Y
         if not (axis_y >= lowest_y and axis_y <= highest_y):
-            return (3.0,)
+            return (3,)
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return (3.0,)
+            return (3,)
         return (
             (axis_x, axis_y, axis_z, axis_r),
         )
@@ -86,7 +86,7 @@ def unrolled(k: Constants) -> Unrolled:
             ),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import solve, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.hexapod import Constants
 
 
@@ -114,13 +114,13 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_shortest_link = 1e-9*machine_scale
     no_offsets = not any((offset_l1, offset_l2, offset_l3, offset_l4, offset_l5, offset_l6,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return (2.0,)
+            return (2,)
         platform_1_z_times_r13 = platform_1_z*r13
         platform_1_x_times_r11_plus_platform_1_y_times_r12 = platform_1_x*r11 + platform_1_y*r12
         span_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13 + x - base_1_x  # rod 1
@@ -135,7 +135,7 @@ def unrolled(k: Constants) -> Unrolled:
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link):
-            return (3.0,)
+            return (3,)
         platform_2_z_times_r13 = platform_2_z*r13
         platform_2_x_times_r11_plus_platform_2_y_times_r12 = platform_2_x*r11 + platform_2_y*r12
         span_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13 + x - base_2_x  # rod 2
@@ -150,7 +150,7 @@ def unrolled(k: Constants) -> Unrolled:
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link):
-            return (3.0,)
+            return (3,)
         platform_3_z_times_r13 = platform_3_z*r13
         platform_3_x_times_r11_plus_platform_3_y_times_r12 = platform_3_x*r11 + platform_3_y*r12
         span_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13 + x - base_3_x  # rod 3
@@ -165,7 +165,7 @@ def unrolled(k: Constants) -> Unrolled:
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link):
-            return (3.0,)
+            return (3,)
         platform_4_z_times_r13 = platform_4_z*r13
         platform_4_x_times_r11_plus_platform_4_y_times_r12 = platform_4_x*r11 + platform_4_y*r12
         span_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13 + x - base_4_x  # rod 4
@@ -180,7 +180,7 @@ def unrolled(k: Constants) -> Unrolled:
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link):
-            return (3.0,)
+            return (3,)
         platform_5_z_times_r13 = platform_5_z*r13
         platform_5_x_times_r11_plus_platform_5_y_times_r12 = platform_5_x*r11 + platform_5_y*r12
         span_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13 + x - base_5_x  # rod 5
@@ -195,7 +195,7 @@ def unrolled(k: Constants) -> Unrolled:
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link):
-            return (3.0,)
+            return (3,)
         platform_6_z_times_r13 = platform_6_z*r13
         platform_6_x_times_r11_plus_platform_6_y_times_r12 = platform_6_x*r11 + platform_6_y*r12
         span_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13 + x - base_6_x  # rod 6
@@ -210,7 +210,7 @@ def unrolled(k: Constants) -> Unrolled:
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link):
-            return (3.0,)
+            return (3,)
         # leg 1: its direction, and the moment of that about the platform's origin
         divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
         along_1_x = span_1_x/divisor_1
@@ -219,7 +219,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
         # leg 1: its joint on the base bends beyond its cone
         if not (cos_base_lean_1 >= least_cos_base):
-            return (3.0,)
+            return (3,)
         # leg 2: its direction, and the moment of that about the platform's origin
         divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
         along_2_x = span_2_x/divisor_2
@@ -228,7 +228,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
         # leg 2: its joint on the base bends beyond its cone
         if not (cos_base_lean_2 >= least_cos_base):
-            return (3.0,)
+            return (3,)
         # leg 3: its direction, and the moment of that about the platform's origin
         divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
         along_3_x = span_3_x/divisor_3
@@ -237,7 +237,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
         # leg 3: its joint on the base bends beyond its cone
         if not (cos_base_lean_3 >= least_cos_base):
-            return (3.0,)
+            return (3,)
         # leg 4: its direction, and the moment of that about the platform's origin
         divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
         along_4_x = span_4_x/divisor_4
@@ -246,7 +246,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
         # leg 4: its joint on the base bends beyond its cone
         if not (cos_base_lean_4 >= least_cos_base):
-            return (3.0,)
+            return (3,)
         # leg 5: its direction, and the moment of that about the platform's origin
         divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
         along_5_x = span_5_x/divisor_5
@@ -255,7 +255,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
         # leg 5: its joint on the base bends beyond its cone
         if not (cos_base_lean_5 >= least_cos_base):
-            return (3.0,)
+            return (3,)
         # leg 6: its direction, and the moment of that about the platform's origin
         divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
         along_6_x = span_6_x/divisor_6
@@ -264,49 +264,49 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
         # leg 6: its joint on the base bends beyond its cone
         if not (cos_base_lean_6 >= least_cos_base):
-            return (3.0,)
+            return (3,)
         cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
         cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
         cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
         cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
         # leg 1: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_1 >= least_cos_plate):
-            return (3.0,)
+            return (3,)
         cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
         cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
         cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
         cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
         # leg 2: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_2 >= least_cos_plate):
-            return (3.0,)
+            return (3,)
         cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
         cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
         cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
         cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
         # leg 3: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_3 >= least_cos_plate):
-            return (3.0,)
+            return (3,)
         cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
         cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
         cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
         cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
         # leg 4: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_4 >= least_cos_plate):
-            return (3.0,)
+            return (3,)
         cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
         cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
         cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
         cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
         # leg 5: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_5 >= least_cos_plate):
-            return (3.0,)
+            return (3,)
         cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
         cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
         cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
         cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
         # leg 6: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_6 >= least_cos_plate):
-            return (3.0,)
+            return (3,)
         arm_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23
         arm_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33
         arm_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13
@@ -363,31 +363,31 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_dependent: the other assembly mode, or too near to losing the plate
         if not (assembly_sign*determinant >= min_type2_margin):
-            return (3.0,)
+            return (3,)
         axis_l1 = l1 + offset_l1
         # limits of L1
         if not (axis_l1 >= lowest_l1 and axis_l1 <= highest_l1):
-            return (3.0,)
+            return (3,)
         axis_l2 = l2 + offset_l2
         # limits of L2
         if not (axis_l2 >= lowest_l2 and axis_l2 <= highest_l2):
-            return (3.0,)
+            return (3,)
         axis_l3 = l3 + offset_l3
         # limits of L3
         if not (axis_l3 >= lowest_l3 and axis_l3 <= highest_l3):
-            return (3.0,)
+            return (3,)
         axis_l4 = l4 + offset_l4
         # limits of L4
         if not (axis_l4 >= lowest_l4 and axis_l4 <= highest_l4):
-            return (3.0,)
+            return (3,)
         axis_l5 = l5 + offset_l5
         # limits of L5
         if not (axis_l5 >= lowest_l5 and axis_l5 <= highest_l5):
-            return (3.0,)
+            return (3,)
         axis_l6 = l6 + offset_l6
         # limits of L6
         if not (axis_l6 >= lowest_l6 and axis_l6 <= highest_l6):
-            return (3.0,)
+            return (3,)
         return (
             (axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6),
         )
@@ -642,7 +642,7 @@ def unrolled(k: Constants) -> Unrolled:
             (l1 + offset_l1, l2 + offset_l2, l3 + offset_l3, l4 + offset_l4, l5 + offset_l5, l6 + offset_l6),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x  # rod 1

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.kin_5axes import Constants
 
 
@@ -40,7 +40,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_b_times_2 = 2.0*offset_b
     no_offsets = not any((offset_a, offset_b, offset_x, offset_y, offset_z,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
@@ -50,20 +50,20 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a <= 1e9
             and -1e9 <= ref_b <= 1e9
         ):
-            return 2*(2.0,)
+            return 2*(2,)
         wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
-            return 2*(3.0,)
+            return 2*(3,)
         axis_y = offset_y + (y - r23*tool_length_times_tool_side)
         # limits of Y
         if not (axis_y >= lowest_y and axis_y <= highest_y):
-            return 2*(3.0,)
+            return 2*(3,)
         axis_z = offset_z + (z - r33*tool_length_times_tool_side)
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return 2*(3.0,)
+            return 2*(3,)
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
@@ -79,22 +79,22 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a_positive = sin(free_a)
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
-        open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
+        open_a = mid_a if single_a else ref_a  # A: where its turn is open
         # A: its turn
         axis_a_positive = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive + 0.0)/DEGREE
         if not -180.000000001 <= axis_a_positive - open_a < 179.999999999:
             axis_a_positive = nearest_period(axis_a_positive, open_a)
-        open_b = mid_b if single_b > 0.0 else ref_b  # B: where its turn is open
+        open_b = mid_b if single_b else ref_b  # B: where its turn is open
         axis_b_positive = offset_b + arctan2(radius_a, r33 + 0.0)/DEGREE  # B: its turn
         if not -180.000000001 <= axis_b_positive - open_b < 179.999999999:
             axis_b_positive = nearest_period(axis_b_positive, open_b)
         # limits of A, limits of B
         refusal_positive = (
-            0.0
+            0
             if (axis_a_positive >= lowest_a) and (axis_b_positive >= lowest_b) and (
                 axis_a_positive <= highest_a
             ) and (axis_b_positive <= highest_b)
-            else 3.0
+            else 3
         )
         direction_of_axis_a = (
             180.0 + axis_a_positive
@@ -109,21 +109,21 @@ def unrolled(k: Constants) -> Unrolled:
             axis_b_negative = nearest_period(axis_b_negative, open_b)
         # limits of A, limits of B
         refusal_negative = (
-            0.0
+            0
             if (axis_a_negative >= lowest_a) and (axis_b_negative >= lowest_b) and (
                 axis_a_negative <= highest_a
             ) and (axis_b_negative <= highest_b)
-            else 3.0
+            else 3
         )
         return (
             (
                 (axis_x, axis_y, axis_z, axis_a_positive, axis_b_positive)
-                if refusal_positive == 0.0
+                if refusal_positive == 0
                 else refusal_positive
             ),
             (
                 (axis_x, axis_y, axis_z, axis_a_negative, axis_b_negative)
-                if refusal_negative == 0.0
+                if refusal_negative == 0
                 else refusal_negative
             ),
         )
@@ -163,7 +163,7 @@ def unrolled(k: Constants) -> Unrolled:
             (axis_x, axis_y, axis_z, direction_of_axis_a, offset_b_times_2 - axis_b),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         (sigma_roll,) = signs
@@ -174,8 +174,8 @@ def unrolled(k: Constants) -> Unrolled:
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
         # a: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_a > 1e-11:
-            direction_x_a = r13_of_a*sigma_roll
-            direction_y_a = r23_of_a*sigma_roll
+            direction_x_a = sigma_roll*r13_of_a
+            direction_y_a = sigma_roll*r23_of_a
         else:
             free_a = (ref_a - offset_a)*DEGREE
             direction_x_a = cos(free_a)
@@ -183,14 +183,14 @@ def unrolled(k: Constants) -> Unrolled:
         if no_offsets:
             return (
                 wrist_x, y - r23*tool_length_times_tool_side, z - r33*tool_length_times_tool_side,
-                arctan2(direction_y_a, direction_x_a)*RADIAN, arctan2(radius_a*sigma_roll, r33)*RADIAN,
+                arctan2(direction_y_a, direction_x_a)*RADIAN, arctan2(sigma_roll*radius_a, r33)*RADIAN,
             )
         return (
             offset_x + wrist_x,
             offset_y + (y - r23*tool_length_times_tool_side),
             offset_z + (z - r33*tool_length_times_tool_side),
             offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN,
-            offset_b + arctan2(radius_a*sigma_roll, r33)*RADIAN,
+            offset_b + arctan2(sigma_roll*radius_a, r33)*RADIAN,
         )
 
     return Unrolled(every_branch, branches, branch)

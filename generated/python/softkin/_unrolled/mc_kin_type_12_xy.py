@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.mc_kin_type_12_xy import Constants
 
 
@@ -38,12 +38,10 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_times_shortest_link = 1e-9*link_length_1
     link_length_1_times_2 = 2.0*link_length_1
     link_length_1_times_link_length_3_by_link_length_2 = link_length_1*link_length_3/link_length_2
-    link_length_3_times_swap_xy_by_link_length_2 = link_length_3*swap_xy/link_length_2
     link_length_3_by_link_length_2 = link_length_3/link_length_2
     link_length_1_times_link_length_2 = link_length_1*link_length_2
     link_length_1_times_link_length_3 = link_length_1*link_length_3
     link_length_5_times_shortest_link = 1e-9*link_length_5
-    link_length_2_times_swap_xy = link_length_2*swap_xy
     constant_part = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
     link_length_5_times_2 = 2.0*link_length_5
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
@@ -52,7 +50,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_4_minus_link_length_5 = link_length_4 - link_length_5
     no_offsets = not any((offset_a1, offset_a2,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2 = reference
@@ -61,18 +59,22 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
         ):
-            return 4*(2.0,)
+            return 4*(2,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return 4*(3.0,)
-        swap_xy_times_x_minus_swap_xy_times_y = swap_xy*x - swap_xy*y
-        span_upper_x = x - swap_xy_times_x_minus_swap_xy_times_y  # rod upper
-        span_upper_y = swap_xy_times_x_minus_swap_xy_times_y + y  # rod upper
+            return 4*(3,)
+        # rod upper
+        if swap_xy:
+            span_upper_x = y
+            span_upper_y = x
+        else:
+            span_upper_x = x
+            span_upper_y = y
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
         if not (effective_a1 > link_length_1_times_shortest_link):
-            return 4*(3.0,)
+            return 4*(3,)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
         divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
@@ -88,34 +90,50 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return 4*(3.0,)
+            return 4*(3,)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
+        sin_a1_left = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
+        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
         sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
-        part_of_span_rear_x = (
-            link_length_3_times_swap_xy_by_link_length_2*x - link_length_3_times_swap_xy_by_link_length_2*y
-        )
-        span_rear_x = part_of_span_rear_x - link_length_3_by_link_length_2*x  # rod rear
+        cos_a1_left = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
+        pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
+        sin_a1_right = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
+        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
+        cos_a1_right = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
+        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
+        # rod rear
+        if swap_xy:
+            centre_1_x_left = pivot_upper_y_left
+            centre_1_y_left = pivot_upper_x_left
+            span_rear_x = -link_length_3_by_link_length_2*y
+            span_rear_y = -link_length_3_by_link_length_2*x
+            centre_1_x_right = pivot_upper_y_right
+            centre_1_y_right = pivot_upper_x_right
+        else:
+            centre_1_x_left = pivot_upper_x_left
+            centre_1_y_left = pivot_upper_y_left
+            span_rear_x = -link_length_3_by_link_length_2*x
+            span_rear_y = -link_length_3_by_link_length_2*y
+            centre_1_x_right = pivot_upper_x_right
+            centre_1_y_right = pivot_upper_y_right
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
         along_a2 = (
             (
-                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
-                - link_length_1_times_link_length_3*sin_a1
+                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1_left
+                - link_length_1_times_link_length_3*sin_a1_left
             )
             /link_length_2
         )
-        span_rear_y = -part_of_span_rear_x - link_length_3_by_link_length_2*y  # rod rear
         link_length_2_times_span_rear_y = link_length_2*span_rear_y
         across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
+                link_length_1_times_link_length_2*cos_a1_left + link_length_1_times_link_length_3*cos_a1_left
                 - link_length_2_times_span_rear_y
             )
             /link_length_2
@@ -147,13 +165,13 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_left = (
             across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_left - open_a2 < 179.999999999:
             axis_a2_left_left = nearest_period(axis_a2_left_left, open_a2)
         swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         cos_a2_right = (
@@ -167,66 +185,63 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a2_left_right = nearest_period(axis_a2_left_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
-            minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
-            minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
-            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
-            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
-            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
-            part_of_pivot_rear_x = link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
-            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear
-            part_of_pivot_rear_y = link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
-            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left  # rod rear
-            part_of_centre_2_x = (
-                link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
+            rod_1_x = x - centre_1_x_left
+            rod_1_y = y - centre_1_y_left
+            part_of_minus_pivot_rear_x = (
+                link_length_1*sin_a1_left + link_length_1_times_link_length_3_by_link_length_2*sin_a1_left
             )
-            type2_arms_aligned_left = (
-                constant_part
-                *(
-                    (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3)*rod_1_x
-                    - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3)*rod_1_y
-                )
+            minus_pivot_rear_x_left = link_length_5*cos_a2_left - part_of_minus_pivot_rear_x  # rod rear
+            part_of_minus_pivot_rear_y = (
+                link_length_1*cos_a1_left + link_length_1_times_link_length_3_by_link_length_2*cos_a1_left
             )
+            minus_pivot_rear_y_left = -part_of_minus_pivot_rear_y - link_length_5*sin_a2_left  # rod rear
+            centre_2_x_left = (
+                (link_length_2*minus_pivot_rear_y_left if swap_xy else link_length_2*minus_pivot_rear_x_left)
+                /link_length_3
+            )
+            centre_2_y_left = (
+                (link_length_2*minus_pivot_rear_x_left if swap_xy else link_length_2*minus_pivot_rear_y_left)
+                /link_length_3
+            )
+            type2_arms_aligned_left = constant_part*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
             refusal_left_left = (
-                0.0
+                0
                 if (axis_a2_left_left >= lowest_a2) and (
                     type2_arms_aligned_left >= min_type2_margin
                 ) and (axis_a2_left_left <= highest_a2)
-                else 3.0
+                else 3
             )
-            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_right  # rod rear
-            part_of_centre_2_x_left_right = (
-                link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
+            minus_pivot_rear_x_right = link_length_5*cos_a2_right - part_of_minus_pivot_rear_x  # rod rear
+            minus_pivot_rear_y_right = -part_of_minus_pivot_rear_y - link_length_5*sin_a2_right  # rod rear
+            centre_2_x_right = (
+                (link_length_2*minus_pivot_rear_y_right if swap_xy else link_length_2*minus_pivot_rear_x_right)
+                /link_length_3
             )
-            type2_arms_aligned_right = (
-                constant_part
-                *(
-                    (y - (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
-                    - (x - (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
-                )
+            centre_2_y_right = (
+                (link_length_2*minus_pivot_rear_x_right if swap_xy else link_length_2*minus_pivot_rear_y_right)
+                /link_length_3
             )
+            type2_arms_aligned_right = constant_part*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
             refusal_left_right = (
-                0.0
+                0
                 if (axis_a2_left_right >= lowest_a2) and (
                     type2_arms_aligned_right >= min_type2_margin
                 ) and (axis_a2_left_right <= highest_a2)
-                else 3.0
+                else 3
             )
         else:
-            refusal_left_left = 3.0
-            refusal_left_right = 3.0
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
+            refusal_left_left = 3
+            refusal_left_right = 3
         along_a2 = (
             (
-                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
-                - link_length_1_times_link_length_3*sin_a1
+                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1_right
+                - link_length_1_times_link_length_3*sin_a1_right
             )
             /link_length_2
         )
         across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
+                link_length_1_times_link_length_2*cos_a1_right + link_length_1_times_link_length_3*cos_a1_right
                 - link_length_2_times_span_rear_y
             )
             /link_length_2
@@ -258,7 +273,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_right_left - open_a2 < 179.999999999:
             axis_a2_right_left = nearest_period(axis_a2_right_left, open_a2)
         swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         cos_a2_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
@@ -268,67 +283,58 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a2_right_right = nearest_period(axis_a2_right_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
-            minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
-            minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
-            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
-            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
-            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
-            part_of_pivot_rear_x_left_right = (
-                link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
+            rod_1_x = x - centre_1_x_right
+            rod_1_y = y - centre_1_y_right
+            part_of_minus_pivot_rear_x_left_right = (
+                link_length_1*sin_a1_right + link_length_1_times_link_length_3_by_link_length_2*sin_a1_right
             )
-            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_left  # rod rear
-            part_of_pivot_rear_y_left_right = (
-                link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
+            minus_pivot_rear_x_left = link_length_5*cos_a2_left - part_of_minus_pivot_rear_x_left_right  # rod rear
+            part_of_minus_pivot_rear_y_left_right = (
+                link_length_1*cos_a1_right + link_length_1_times_link_length_3_by_link_length_2*cos_a1_right
             )
-            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left  # rod rear
-            part_of_centre_2_x_left_right_left_right_2 = (
-                link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
+            minus_pivot_rear_y_left = -part_of_minus_pivot_rear_y_left_right - link_length_5*sin_a2_left  # rod rear
+            centre_2_x_left = (
+                (link_length_2*minus_pivot_rear_y_left if swap_xy else link_length_2*minus_pivot_rear_x_left)
+                /link_length_3
             )
-            type2_arms_aligned_left = (
-                constant_part
-                *(
-                    (
-                        y - (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)/link_length_3
-                    )*rod_1_x
-                    - (
-                        x - (part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_x_left)/link_length_3
-                    )*rod_1_y
-                )
+            centre_2_y_left = (
+                (link_length_2*minus_pivot_rear_x_left if swap_xy else link_length_2*minus_pivot_rear_y_left)
+                /link_length_3
             )
+            type2_arms_aligned_left = constant_part*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
             refusal_right_left = (
-                0.0
+                0
                 if (axis_a2_right_left >= lowest_a2) and (
                     type2_arms_aligned_left >= min_type2_margin
                 ) and (axis_a2_right_left <= highest_a2)
-                else 3.0
+                else 3
             )
-            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right  # rod rear
-            part_of_centre_2_x = (
-                link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
+            minus_pivot_rear_x_right = link_length_5*cos_a2_right - part_of_minus_pivot_rear_x_left_right  # rod rear
+            minus_pivot_rear_y_right = -part_of_minus_pivot_rear_y_left_right - link_length_5*sin_a2_right  # rod rear
+            centre_2_x_right = (
+                (link_length_2*minus_pivot_rear_y_right if swap_xy else link_length_2*minus_pivot_rear_x_right)
+                /link_length_3
             )
-            type2_arms_aligned_right = (
-                constant_part
-                *(
-                    (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
-                    - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
-                )
+            centre_2_y_right = (
+                (link_length_2*minus_pivot_rear_x_right if swap_xy else link_length_2*minus_pivot_rear_y_right)
+                /link_length_3
             )
+            type2_arms_aligned_right = constant_part*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
             refusal_right_right = (
-                0.0
+                0
                 if (axis_a2_right_right >= lowest_a2) and (
                     type2_arms_aligned_right >= min_type2_margin
                 ) and (axis_a2_right_right <= highest_a2)
-                else 3.0
+                else 3
             )
         else:
-            refusal_right_left = 3.0
-            refusal_right_right = 3.0
+            refusal_right_left = 3
+            refusal_right_right = 3
         return (
-            ((axis_a1_left, axis_a2_left_left) if refusal_left_left == 0.0 else refusal_left_left),
-            ((axis_a1_right, axis_a2_right_left) if refusal_right_left == 0.0 else refusal_right_left),
-            ((axis_a1_left, axis_a2_left_right) if refusal_left_right == 0.0 else refusal_left_right),
-            ((axis_a1_right, axis_a2_right_right) if refusal_right_right == 0.0 else refusal_right_right),
+            ((axis_a1_left, axis_a2_left_left) if refusal_left_left == 0 else refusal_left_left),
+            ((axis_a1_right, axis_a2_right_left) if refusal_right_left == 0 else refusal_right_left),
+            ((axis_a1_left, axis_a2_left_right) if refusal_left_right == 0 else refusal_left_right),
+            ((axis_a1_right, axis_a2_right_right) if refusal_right_right == 0 else refusal_right_right),
         )
 
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -337,9 +343,13 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 4*(None,)
-        swap_xy_times_x_minus_swap_xy_times_y = swap_xy*x - swap_xy*y
-        span_upper_x = x - swap_xy_times_x_minus_swap_xy_times_y  # rod upper
-        span_upper_y = swap_xy_times_x_minus_swap_xy_times_y + y  # rod upper
+        # rod upper
+        if swap_xy:
+            span_upper_x = y
+            span_upper_y = x
+        else:
+            span_upper_x = x
+            span_upper_y = y
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
@@ -367,27 +377,43 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
+        sin_a1_left = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
+        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
         sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
-        part_of_span_rear_x = (
-            link_length_3_times_swap_xy_by_link_length_2*x - link_length_3_times_swap_xy_by_link_length_2*y
-        )
-        span_rear_x = part_of_span_rear_x - link_length_3_by_link_length_2*x  # rod rear
+        cos_a1_left = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
+        pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
+        sin_a1_right = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
+        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
+        cos_a1_right = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
+        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
+        # rod rear
+        if swap_xy:
+            centre_1_x_left = pivot_upper_y_left
+            centre_1_y_left = pivot_upper_x_left
+            span_rear_x = -link_length_3_by_link_length_2*y
+            span_rear_y = -link_length_3_by_link_length_2*x
+            centre_1_x_right = pivot_upper_y_right
+            centre_1_y_right = pivot_upper_x_right
+        else:
+            centre_1_x_left = pivot_upper_x_left
+            centre_1_y_left = pivot_upper_y_left
+            span_rear_x = -link_length_3_by_link_length_2*x
+            span_rear_y = -link_length_3_by_link_length_2*y
+            centre_1_x_right = pivot_upper_x_right
+            centre_1_y_right = pivot_upper_y_right
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
         along_a2 = (
             (
-                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
-                - link_length_1_times_link_length_3*sin_a1
+                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1_left
+                - link_length_1_times_link_length_3*sin_a1_left
             )
             /link_length_2
         )
-        span_rear_y = -part_of_span_rear_x - link_length_3_by_link_length_2*y  # rod rear
         link_length_2_times_span_rear_y = link_length_2*span_rear_y
         across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
+                link_length_1_times_link_length_2*cos_a1_left + link_length_1_times_link_length_3*cos_a1_left
                 - link_length_2_times_span_rear_y
             )
             /link_length_2
@@ -428,55 +454,52 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
-            minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
-            minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
-            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
-            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
-            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
-            part_of_pivot_rear_x = link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
-            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left_left  # rod rear
-            part_of_pivot_rear_y = link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
-            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left_left  # rod rear
-            part_of_centre_2_x = (
-                link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
+            rod_1_x = x - centre_1_x_left
+            rod_1_y = y - centre_1_y_left
+            part_of_minus_pivot_rear_x = (
+                link_length_1*sin_a1_left + link_length_1_times_link_length_3_by_link_length_2*sin_a1_left
             )
-            type2_arms_aligned_left = (
-                constant_part
-                *(
-                    (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3)*rod_1_x
-                    - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3)*rod_1_y
-                )
+            minus_pivot_rear_x_left = link_length_5*cos_a2_left_left - part_of_minus_pivot_rear_x  # rod rear
+            part_of_minus_pivot_rear_y = (
+                link_length_1*cos_a1_left + link_length_1_times_link_length_3_by_link_length_2*cos_a1_left
             )
-            refusal_left_left = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
-            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_left_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_left_right  # rod rear
-            part_of_centre_2_x_left_right = (
-                link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
+            minus_pivot_rear_y_left = -part_of_minus_pivot_rear_y - link_length_5*sin_a2_left_left  # rod rear
+            centre_2_x_left = (
+                (link_length_2*minus_pivot_rear_y_left if swap_xy else link_length_2*minus_pivot_rear_x_left)
+                /link_length_3
             )
-            type2_arms_aligned_right = (
-                constant_part
-                *(
-                    (y - (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
-                    - (x - (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
-                )
+            centre_2_y_left = (
+                (link_length_2*minus_pivot_rear_x_left if swap_xy else link_length_2*minus_pivot_rear_y_left)
+                /link_length_3
             )
-            refusal_left_right = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
+            type2_arms_aligned_left = constant_part*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
+            refusal_left_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
+            minus_pivot_rear_x_right = link_length_5*cos_a2_left_right - part_of_minus_pivot_rear_x  # rod rear
+            minus_pivot_rear_y_right = -part_of_minus_pivot_rear_y - link_length_5*sin_a2_left_right  # rod rear
+            centre_2_x_right = (
+                (link_length_2*minus_pivot_rear_y_right if swap_xy else link_length_2*minus_pivot_rear_x_right)
+                /link_length_3
+            )
+            centre_2_y_right = (
+                (link_length_2*minus_pivot_rear_x_right if swap_xy else link_length_2*minus_pivot_rear_y_right)
+                /link_length_3
+            )
+            type2_arms_aligned_right = constant_part*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
+            refusal_left_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
         else:
-            refusal_left_left = 3.0
-            refusal_left_right = 3.0
-        axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
+            refusal_left_left = 3
+            refusal_left_right = 3
+        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)*RADIAN
         along_a2 = (
             (
-                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
-                - link_length_1_times_link_length_3*sin_a1
+                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1_right
+                - link_length_1_times_link_length_3*sin_a1_right
             )
             /link_length_2
         )
         across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
+                link_length_1_times_link_length_2*cos_a1_right + link_length_1_times_link_length_3*cos_a1_right
                 - link_length_2_times_span_rear_y
             )
             /link_length_2
@@ -509,83 +532,81 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_right_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
-            minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
-            minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
-            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
-            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
-            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
-            part_of_pivot_rear_x_left_right = (
-                link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
+            rod_1_x = x - centre_1_x_right
+            rod_1_y = y - centre_1_y_right
+            part_of_minus_pivot_rear_x_left_right = (
+                link_length_1*sin_a1_right + link_length_1_times_link_length_3_by_link_length_2*sin_a1_right
             )
-            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_left  # rod rear
-            part_of_pivot_rear_y_left_right = (
-                link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
+            minus_pivot_rear_x_left = link_length_5*cos_a2_right_left - part_of_minus_pivot_rear_x_left_right  # rod rear
+            part_of_minus_pivot_rear_y_left_right = (
+                link_length_1*cos_a1_right + link_length_1_times_link_length_3_by_link_length_2*cos_a1_right
             )
-            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_left  # rod rear
-            part_of_centre_2_x_left_right_left_right_2 = (
-                link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
+            minus_pivot_rear_y_left = -part_of_minus_pivot_rear_y_left_right - link_length_5*sin_a2_right_left  # rod rear
+            centre_2_x_left = (
+                (link_length_2*minus_pivot_rear_y_left if swap_xy else link_length_2*minus_pivot_rear_x_left)
+                /link_length_3
             )
-            type2_arms_aligned_left = (
-                constant_part
-                *(
-                    (
-                        y - (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)/link_length_3
-                    )*rod_1_x
-                    - (
-                        x - (part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_x_left)/link_length_3
-                    )*rod_1_y
-                )
+            centre_2_y_left = (
+                (link_length_2*minus_pivot_rear_x_left if swap_xy else link_length_2*minus_pivot_rear_y_left)
+                /link_length_3
             )
-            refusal_right_left = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
-            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_right  # rod rear
-            part_of_centre_2_x = (
-                link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
+            type2_arms_aligned_left = constant_part*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
+            refusal_right_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
+            # rod rear
+            minus_pivot_rear_x_right = link_length_5*cos_a2_right_right - part_of_minus_pivot_rear_x_left_right
+            # rod rear
+            minus_pivot_rear_y_right = -part_of_minus_pivot_rear_y_left_right - link_length_5*sin_a2_right_right
+            centre_2_x_right = (
+                (link_length_2*minus_pivot_rear_y_right if swap_xy else link_length_2*minus_pivot_rear_x_right)
+                /link_length_3
             )
-            type2_arms_aligned_right = (
-                constant_part
-                *(
-                    (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
-                    - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
-                )
+            centre_2_y_right = (
+                (link_length_2*minus_pivot_rear_x_right if swap_xy else link_length_2*minus_pivot_rear_y_right)
+                /link_length_3
             )
-            refusal_right_right = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
+            type2_arms_aligned_right = constant_part*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
+            refusal_right_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
         else:
-            refusal_right_left = 3.0
-            refusal_right_right = 3.0
-        axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
+            refusal_right_left = 3
+            refusal_right_right = 3
+        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right)*RADIAN
         return (
             (
                 (axis_a1_left, offset_a2 + arctan2(sin_a2_left_left, cos_a2_left_left)*RADIAN)
-                if refusal_left_left == 0.0
+                if refusal_left_left == 0
                 else None
             ),
             (
                 (axis_a1_right, offset_a2 + arctan2(sin_a2_right_left, cos_a2_right_left)*RADIAN)
-                if refusal_right_left == 0.0
+                if refusal_right_left == 0
                 else None
             ),
             (
                 (axis_a1_left, offset_a2 + arctan2(sin_a2_left_right, cos_a2_left_right)*RADIAN)
-                if refusal_left_right == 0.0
+                if refusal_left_right == 0
                 else None
             ),
             (
                 (axis_a1_right, offset_a2 + arctan2(sin_a2_right_right, cos_a2_right_right)*RADIAN)
-                if refusal_right_right == 0.0
+                if refusal_right_right == 0
                 else None
             ),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_t, sigma_w = signs
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
-        span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
-        span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
+        # rod upper
+        if swap_xy:
+            span_upper_x = y
+            span_upper_y = x
+        else:
+            span_upper_x = x
+            span_upper_y = y
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
@@ -611,10 +632,12 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
-        span_rear_x = (
-            link_length_3_times_swap_xy_by_link_length_2*x - link_length_3_by_link_length_2*x
-            - link_length_3_times_swap_xy_by_link_length_2*y
-        )
+        if swap_xy:
+            span_rear_x = -link_length_3_by_link_length_2*y
+            span_rear_y = -link_length_3_by_link_length_2*x
+        else:
+            span_rear_x = -link_length_3_by_link_length_2*x
+            span_rear_y = -link_length_3_by_link_length_2*y
         along_a2 = (
             (
                 link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1
@@ -623,11 +646,6 @@ def unrolled(k: Constants) -> Unrolled:
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
-        # rod rear
-        span_rear_y = (
-            link_length_3_times_swap_xy_by_link_length_2*y - link_length_3_by_link_length_2*y
-            - link_length_3_times_swap_xy_by_link_length_2*x
-        )
         across_a2 = (
             (
                 link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
@@ -653,39 +671,31 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return None
-        minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
-        minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
-        rod_1_x = x - (minus_pivot_upper_x*swap_xy - minus_pivot_upper_x - minus_pivot_upper_y*swap_xy)
-        rod_1_y = y - (minus_pivot_upper_y*swap_xy - minus_pivot_upper_y - minus_pivot_upper_x*swap_xy)
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper
+        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear
-        pivot_rear_x = (
-            link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1 - link_length_5*cos_a2
+        minus_pivot_rear_x = (
+            link_length_5*cos_a2 - link_length_1*sin_a1 - link_length_1_times_link_length_3_by_link_length_2*sin_a1
         )
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
-        pivot_rear_y = (
-            link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1 + link_length_5*sin_a2
+        minus_pivot_rear_y = (
+            -link_length_1*cos_a1 - link_length_1_times_link_length_3_by_link_length_2*cos_a1 - link_length_5*sin_a2
         )
-        centre_2_x = (
-            (
-                link_length_2_times_swap_xy*pivot_rear_x - link_length_2*pivot_rear_x
-                - link_length_2_times_swap_xy*pivot_rear_y
-            )
-            /link_length_3
-        )
-        centre_2_y = (
-            (
-                link_length_2_times_swap_xy*pivot_rear_y - link_length_2*pivot_rear_y
-                - link_length_2_times_swap_xy*pivot_rear_x
-            )
-            /link_length_3
-        )
-        type2_arms_aligned = constant_part*((y - centre_2_y)*rod_1_x - (x - centre_2_x)*rod_1_y)
+        centre_2_x = (link_length_2*minus_pivot_rear_y if swap_xy else link_length_2*minus_pivot_rear_x)/link_length_3
+        centre_2_y = (link_length_2*minus_pivot_rear_x if swap_xy else link_length_2*minus_pivot_rear_y)/link_length_3
+        type2_arms_aligned = ((x - centre_1_x)*(y - centre_2_y) - (y - centre_1_y)*(x - centre_2_x))*constant_part
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

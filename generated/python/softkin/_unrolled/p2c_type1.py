@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.p2c_type1 import Constants
 
 
@@ -41,7 +41,7 @@ def unrolled(k: Constants) -> Unrolled:
     inner_arm_minus_outer_arm = inner_arm - outer_arm
     no_offsets = not any((offset_a1, offset_a2,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2 = reference
@@ -50,15 +50,15 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
         ):
-            return 4*(2.0,)
+            return 4*(2,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return 4*(3.0,)
+            return 4*(3,)
         span_1_x = displacement_minus_tcp_displacement + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
-            return 4*(3.0,)
+            return 4*(3,)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
         divisor_a1_minus_outer_arm = divisor_a1 - outer_arm
@@ -70,12 +70,12 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return 4*(3.0,)
+            return 4*(3,)
         span_2_x = x - displacement_minus_tcp_displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
-            return 4*(3.0,)
+            return 4*(3,)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
         divisor_a2_minus_outer_arm = divisor_a2 - outer_arm
@@ -87,7 +87,7 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return 4*(3.0,)
+            return 4*(3,)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
@@ -112,11 +112,11 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = -cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
         minus_pivot_2_y = inner_arm*sin_a2  # rod 2
         rod_2_y_outward = minus_pivot_2_y + y
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
             axis_a2_outward = nearest_period(axis_a2_outward, open_a2)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
@@ -139,20 +139,20 @@ def unrolled(k: Constants) -> Unrolled:
                 type2_arms_aligned_outward = (
                     assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
                 )
-                refusal_outward_outward_2 = 0.0 if type2_arms_aligned_outward >= min_type2_margin else 3.0
+                refusal_outward_outward_2 = 0 if type2_arms_aligned_outward >= min_type2_margin else 3
             else:
-                refusal_outward_outward_2 = 3.0
+                refusal_outward_outward_2 = 3
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 type2_arms_aligned_inward = (
                     assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
                 )
-                refusal_outward_inward_2 = 0.0 if type2_arms_aligned_inward >= min_type2_margin else 3.0
+                refusal_outward_inward_2 = 0 if type2_arms_aligned_inward >= min_type2_margin else 3
             else:
-                refusal_outward_inward_2 = 3.0
+                refusal_outward_inward_2 = 3
         else:
-            refusal_outward_outward_2 = 3.0
-            refusal_outward_inward_2 = 3.0
+            refusal_outward_outward_2 = 3
+            refusal_outward_inward_2 = 3
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
@@ -168,25 +168,25 @@ def unrolled(k: Constants) -> Unrolled:
                 type2_arms_aligned_outward = (
                     assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
                 )
-                refusal_inward_outward_2 = 0.0 if type2_arms_aligned_outward >= min_type2_margin else 3.0
+                refusal_inward_outward_2 = 0 if type2_arms_aligned_outward >= min_type2_margin else 3
             else:
-                refusal_inward_outward_2 = 3.0
+                refusal_inward_outward_2 = 3
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 type2_arms_aligned_inward = (
                     assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
                 )
-                refusal_inward_inward_2 = 0.0 if type2_arms_aligned_inward >= min_type2_margin else 3.0
+                refusal_inward_inward_2 = 0 if type2_arms_aligned_inward >= min_type2_margin else 3
             else:
-                refusal_inward_inward_2 = 3.0
+                refusal_inward_inward_2 = 3
         else:
-            refusal_inward_outward_2 = 3.0
-            refusal_inward_inward_2 = 3.0
+            refusal_inward_outward_2 = 3
+            refusal_inward_inward_2 = 3
         return (
-            ((axis_a1_outward, axis_a2_outward) if refusal_outward_outward_2 == 0.0 else refusal_outward_outward_2),
-            ((axis_a1_inward, axis_a2_outward) if refusal_inward_outward_2 == 0.0 else refusal_inward_outward_2),
-            ((axis_a1_outward, axis_a2_inward) if refusal_outward_inward_2 == 0.0 else refusal_outward_inward_2),
-            ((axis_a1_inward, axis_a2_inward) if refusal_inward_inward_2 == 0.0 else refusal_inward_inward_2),
+            ((axis_a1_outward, axis_a2_outward) if refusal_outward_outward_2 == 0 else refusal_outward_outward_2),
+            ((axis_a1_inward, axis_a2_outward) if refusal_inward_outward_2 == 0 else refusal_inward_outward_2),
+            ((axis_a1_outward, axis_a2_inward) if refusal_outward_inward_2 == 0 else refusal_outward_inward_2),
+            ((axis_a1_inward, axis_a2_inward) if refusal_inward_inward_2 == 0 else refusal_inward_inward_2),
         )
 
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -259,7 +259,7 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_y_outward = minus_pivot_2_y + y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        refusal_outward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
@@ -270,7 +270,7 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_y_inward = minus_pivot_2_y + y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        refusal_outward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
         pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
@@ -280,19 +280,19 @@ def unrolled(k: Constants) -> Unrolled:
         rod_1_y = minus_pivot_1_y + y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        refusal_inward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        refusal_inward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         return (
-            ((axis_a1_outward, axis_a2_outward) if refusal_outward_outward == 0.0 else None),
-            ((axis_a1_inward, axis_a2_outward) if refusal_inward_outward == 0.0 else None),
-            ((axis_a1_outward, axis_a2_inward) if refusal_outward_inward == 0.0 else None),
-            ((axis_a1_inward, axis_a2_inward) if refusal_inward_inward == 0.0 else None),
+            ((axis_a1_outward, axis_a2_outward) if refusal_outward_outward == 0 else None),
+            ((axis_a1_inward, axis_a2_outward) if refusal_inward_outward == 0 else None),
+            ((axis_a1_outward, axis_a2_inward) if refusal_outward_inward == 0 else None),
+            ((axis_a1_inward, axis_a2_inward) if refusal_inward_inward == 0 else None),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2 = signs

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.p2x_type1 import Constants
 
 
@@ -36,25 +36,25 @@ def unrolled(k: Constants) -> Unrolled:
     assembly_sign_by_arm_length_1_by_arm_length_2 = assembly_sign/(arm_length_1*arm_length_2)
     no_offsets = not any((offset_a1, offset_a2,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return 4*(2.0,)
+            return 4*(2,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return 4*(3.0,)
+            return 4*(3,)
         span_1_y = y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
-            return 4*(3.0,)
+            return 4*(3,)
         span_2_y = y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
-            return 4*(3.0,)
+            return 4*(3,)
         span_2_x = tcp_offset_2 + x  # rod 2
         a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2 - tcp_offset_2  # rod 2
@@ -75,20 +75,20 @@ def unrolled(k: Constants) -> Unrolled:
                 type2_arms_aligned_right = (
                     assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
                 )
-                refusal_left_right_2 = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
+                refusal_left_right_2 = 0 if type2_arms_aligned_right >= min_type2_margin else 3
             else:
-                refusal_left_right_2 = 3.0
+                refusal_left_right_2 = 3
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
                 type2_arms_aligned_left = (
                     assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
                 )
-                refusal_left_left_2 = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
+                refusal_left_left_2 = 0 if type2_arms_aligned_left >= min_type2_margin else 3
             else:
-                refusal_left_left_2 = 3.0
+                refusal_left_left_2 = 3
         else:
-            refusal_left_right_2 = 3.0
-            refusal_left_left_2 = 3.0
+            refusal_left_right_2 = 3
+            refusal_left_left_2 = 3
         a1 = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         axis_a1_right = a1 + offset_a1
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
@@ -99,25 +99,25 @@ def unrolled(k: Constants) -> Unrolled:
                 type2_arms_aligned_right = (
                     assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
                 )
-                refusal_right_right_2 = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
+                refusal_right_right_2 = 0 if type2_arms_aligned_right >= min_type2_margin else 3
             else:
-                refusal_right_right_2 = 3.0
+                refusal_right_right_2 = 3
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
                 type2_arms_aligned_left = (
                     assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
                 )
-                refusal_right_left_2 = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
+                refusal_right_left_2 = 0 if type2_arms_aligned_left >= min_type2_margin else 3
             else:
-                refusal_right_left_2 = 3.0
+                refusal_right_left_2 = 3
         else:
-            refusal_right_right_2 = 3.0
-            refusal_right_left_2 = 3.0
+            refusal_right_right_2 = 3
+            refusal_right_left_2 = 3
         return (
-            ((axis_a1_left, axis_a2_right) if refusal_left_right_2 == 0.0 else refusal_left_right_2),
-            ((axis_a1_right, axis_a2_right) if refusal_right_right_2 == 0.0 else refusal_right_right_2),
-            ((axis_a1_left, axis_a2_left) if refusal_left_left_2 == 0.0 else refusal_left_left_2),
-            ((axis_a1_right, axis_a2_left) if refusal_right_left_2 == 0.0 else refusal_right_left_2),
+            ((axis_a1_left, axis_a2_right) if refusal_left_right_2 == 0 else refusal_left_right_2),
+            ((axis_a1_right, axis_a2_right) if refusal_right_right_2 == 0 else refusal_right_right_2),
+            ((axis_a1_left, axis_a2_left) if refusal_left_left_2 == 0 else refusal_left_left_2),
+            ((axis_a1_right, axis_a2_left) if refusal_right_left_2 == 0 else refusal_right_left_2),
         )
 
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -148,7 +148,7 @@ def unrolled(k: Constants) -> Unrolled:
             assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_left_right = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        refusal_left_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_left = a1 + offset_a1
         axis_a2_right = a2 + offset_a2
         a2 = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
@@ -158,7 +158,7 @@ def unrolled(k: Constants) -> Unrolled:
             assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_left_left = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        refusal_left_left = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_left = a2 + offset_a2
         a1 = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         pivot_1_x = a1 + tcp_offset_1  # rod 1
@@ -167,21 +167,21 @@ def unrolled(k: Constants) -> Unrolled:
             assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_right_right = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        refusal_right_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_right = a1 + offset_a1
         type2_arms_aligned = (
             assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_right_left = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        refusal_right_left = 0 if type2_arms_aligned >= min_type2_margin else 3
         return (
-            ((axis_a1_left, axis_a2_right) if refusal_left_right == 0.0 else None),
-            ((axis_a1_right, axis_a2_right) if refusal_right_right == 0.0 else None),
-            ((axis_a1_left, axis_a2_left) if refusal_left_left == 0.0 else None),
-            ((axis_a1_right, axis_a2_left) if refusal_right_left == 0.0 else None),
+            ((axis_a1_left, axis_a2_right) if refusal_left_right == 0 else None),
+            ((axis_a1_right, axis_a2_right) if refusal_right_right == 0 else None),
+            ((axis_a1_left, axis_a2_left) if refusal_left_left == 0 else None),
+            ((axis_a1_right, axis_a2_left) if refusal_right_left == 0 else None),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2 = signs

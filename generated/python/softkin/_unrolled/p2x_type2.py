@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.p2x_type2 import Constants
 
 
@@ -31,33 +31,33 @@ def unrolled(k: Constants) -> Unrolled:
     assembly_sign_by_arm_length = assembly_sign/arm_length
     no_offsets = not any((offset_a1, offset_a2,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return (2.0,)
+            return (2,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return (3.0,)
+            return (3,)
         root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
         if not (root_square_a2 >= -share_of_arm_length_squared):
-            return (3.0,)
+            return (3,)
         type2_flat = assembly_sign_by_arm_length*y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
-            return (3.0,)
+            return (3,)
         a2 = span_1_x + x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         a1 = 2.0*x - a2  # a1: affine in the x equation
         axis_a1 = a1 + offset_a1
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return (3.0,)
+            return (3,)
         axis_a2 = a2 + offset_a2
         # limits of A2
         if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return (3.0,)
+            return (3,)
         return (
             (axis_a1, axis_a2),
         )
@@ -82,7 +82,7 @@ def unrolled(k: Constants) -> Unrolled:
             (a1 + offset_a1, a2 + offset_a2),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none

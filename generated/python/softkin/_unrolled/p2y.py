@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Unrolled
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.p2y import Constants
 
 
@@ -28,34 +28,34 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_plane = 1e-6*machine_scale
     no_offsets = not any((offset_a1, offset_a2,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return (2.0,)
+            return (2,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return (3.0,)
+            return (3,)
         a1 = x + y  # a1, a2: affine in the x and y equations
         axis_a1 = a1 + offset_a1
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return (3.0,)
+            return (3,)
         axis_a2 = offset_a2 + (y - x)
         # limits of A2
         if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return (3.0,)
+            return (3,)
         limit_a1 = axis_a1 - offset_a1
         limit_a2 = axis_a2 - offset_a2
         limit_value_x = 0.5*limit_a1 - 0.5*limit_a2  # X of the carriage
         # limits of X of the carriage
         if not (limit_value_x >= lowest_x and limit_value_x <= highest_x):
-            return (3.0,)
+            return (3,)
         limit_value_y = 0.5*limit_a1 + 0.5*limit_a2  # Y of the carriage
         # limits of Y of the carriage
         if not (limit_value_y >= lowest_y and limit_value_y <= highest_y):
-            return (3.0,)
+            return (3,)
         return (
             (axis_a1, axis_a2),
         )
@@ -71,7 +71,7 @@ def unrolled(k: Constants) -> Unrolled:
             (a1 + offset_a1, offset_a2 + (y - x)),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.pcc import Constants
 
 
@@ -38,7 +38,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     no_offsets = not any((offset_a1, offset_a2,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2 = reference
@@ -47,10 +47,10 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
         ):
-            return 2*(2.0,)
+            return 2*(2,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return 2*(3.0,)
+            return 2*(3,)
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
@@ -65,7 +65,7 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
-            return 2*(3.0,)
+            return 2*(3,)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
@@ -82,12 +82,12 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         angle_a2_from_a1 = arctan2(sin_a2_from_a1 + 0.0, cos_a2_from_a1 + 0.0)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         # a2: what the sum a2_from_a1 leaves; A2: its turn
         axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)/DEGREE
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
@@ -96,11 +96,11 @@ def unrolled(k: Constants) -> Unrolled:
         limit_value_elbow = (DEGREE*(axis_a2_right - offset_a2) - DEGREE*(axis_a1_right - offset_a1))/DEGREE
         # limits of A1, limits of A2, limits of the outer arm relative to the inner arm
         refusal_right = (
-            0.0
+            0
             if (axis_a1_right >= lowest_a1) and (axis_a2_right >= lowest_a2) and (limit_value_elbow >= lowest_elbow) and (axis_a1_right <= highest_a1) and (axis_a2_right <= highest_a2) and (
                 limit_value_elbow <= highest_elbow
             )
-            else 3.0
+            else 3
         )
         axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
@@ -113,15 +113,15 @@ def unrolled(k: Constants) -> Unrolled:
         limit_value_elbow = (DEGREE*(axis_a2_left - offset_a2) - DEGREE*(axis_a1_left - offset_a1))/DEGREE
         # limits of A1, limits of A2, limits of the outer arm relative to the inner arm
         refusal_left = (
-            0.0
+            0
             if (axis_a1_left >= lowest_a1) and (axis_a2_left >= lowest_a2) and (limit_value_elbow >= lowest_elbow) and (axis_a1_left <= highest_a1) and (axis_a2_left <= highest_a2) and (
                 limit_value_elbow <= highest_elbow
             )
-            else 3.0
+            else 3
         )
         return (
-            ((axis_a1_right, axis_a2_right) if refusal_right == 0.0 else refusal_right),
-            ((axis_a1_left, axis_a2_left) if refusal_left == 0.0 else refusal_left),
+            ((axis_a1_right, axis_a2_right) if refusal_right == 0 else refusal_right),
+            ((axis_a1_left, axis_a2_left) if refusal_left == 0 else refusal_left),
         )
 
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -168,7 +168,7 @@ def unrolled(k: Constants) -> Unrolled:
             (offset_a1 + angle_a1_left*RADIAN, axis_a2_left),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         (sigma_elbow,) = signs

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.polar_z import Constants
 
 
@@ -30,13 +30,13 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle = 1e-11*machine_scale
     no_offsets = not any((offset_c, offset_r, offset_z,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_c, _, _ = reference
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
-            return (2.0,)
+            return (2,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
         if radius_c > machine_scale_times_free_angle:
@@ -46,21 +46,21 @@ def unrolled(k: Constants) -> Unrolled:
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
+        open_c = mid_c if single_c else ref_c  # C: where its turn is open
         axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c - open_c < 179.999999999:
             axis_c = nearest_period(axis_c, open_c)
         # limits of C
         if not (axis_c >= lowest_c and axis_c <= highest_c):
-            return (3.0,)
+            return (3,)
         axis_r = offset_r + radius_c
         # limits of R
         if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return (3.0,)
+            return (3,)
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return (3.0,)
+            return (3,)
         return (
             (axis_c, axis_r, axis_z),
         )
@@ -82,7 +82,7 @@ def unrolled(k: Constants) -> Unrolled:
             (offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN, offset_r + radius_c, offset_z + z),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         ref_c, _, _ = 3*(0.0,) if reference is None else reference

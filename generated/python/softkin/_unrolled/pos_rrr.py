@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.pos_rrr import Constants
 
 
@@ -48,7 +48,7 @@ def unrolled(k: Constants) -> Unrolled:
     a2_minus_effective_q3_2 = a2 - effective_q3_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2, ref_a3 = reference
@@ -57,7 +57,7 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
-            return 4*(2.0,)
+            return 4*(2,)
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # near a fold
@@ -69,7 +69,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
-                return 4*(3.0,)
+                return 4*(3,)
             ahead_q1_before_q1_for_q3 = 0.0
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
@@ -94,13 +94,13 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
             axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
         angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
         angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
             axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
@@ -121,7 +121,7 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1_before_q1_for_q3_front = sin(free_a1)
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         # A1: its turn
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
@@ -136,22 +136,22 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A2, limits of A3
         if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding:
             refusal_front_down = (
-                0.0
+                0
                 if (axis_a2_front_down >= lowest_a2) and (axis_a3_front_down >= lowest_a3) and (
                     axis_a2_front_down <= highest_a2
                 ) and (axis_a3_front_down <= highest_a3)
-                else 3.0
+                else 3
             )
             refusal_front_up = (
-                0.0
+                0
                 if (axis_a2_front_up >= lowest_a2) and (axis_a3_front_up >= lowest_a3) and (
                     axis_a2_front_up <= highest_a2
                 ) and (axis_a3_front_up <= highest_a3)
-                else 3.0
+                else 3
             )
         else:
-            refusal_front_down = 3.0
-            refusal_front_up = 3.0
+            refusal_front_down = 3
+            refusal_front_up = 3
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
@@ -196,31 +196,31 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A2, limits of A3
         if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding:
             refusal_back_down = (
-                0.0
+                0
                 if (axis_a2_back_down >= lowest_a2) and (axis_a3_back_down >= lowest_a3) and (
                     axis_a2_back_down <= highest_a2
                 ) and (axis_a3_back_down <= highest_a3)
-                else 3.0
+                else 3
             )
             refusal_back_up = (
-                0.0
+                0
                 if (axis_a2_back_up >= lowest_a2) and (axis_a3_back_up >= lowest_a3) and (
                     axis_a2_back_up <= highest_a2
                 ) and (axis_a3_back_up <= highest_a3)
-                else 3.0
+                else 3
             )
         else:
-            refusal_back_down = 3.0
-            refusal_back_up = 3.0
+            refusal_back_down = 3
+            refusal_back_up = 3
         return (
             (
                 (axis_a1_front, axis_a2_front_down, axis_a3_front_down)
-                if refusal_front_down == 0.0
+                if refusal_front_down == 0
                 else refusal_front_down
             ),
-            ((axis_a1_back, axis_a2_back_down, axis_a3_back_down) if refusal_back_down == 0.0 else refusal_back_down),
-            ((axis_a1_front, axis_a2_front_up, axis_a3_front_up) if refusal_front_up == 0.0 else refusal_front_up),
-            ((axis_a1_back, axis_a2_back_up, axis_a3_back_up) if refusal_back_up == 0.0 else refusal_back_up),
+            ((axis_a1_back, axis_a2_back_down, axis_a3_back_down) if refusal_back_down == 0 else refusal_back_down),
+            ((axis_a1_front, axis_a2_front_up, axis_a3_front_up) if refusal_front_up == 0 else refusal_front_up),
+            ((axis_a1_back, axis_a2_back_up, axis_a3_back_up) if refusal_back_up == 0 else refusal_back_up),
         )
 
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -250,7 +250,7 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_front = 0.0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding else 3.0  # q3: out of reach
+        refusal_front = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding else 3  # q3: out of reach
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             d3_times_y = d3*y
@@ -292,7 +292,7 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_back = 0.0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding else 3.0  # q3: out of reach
+        refusal_back = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
@@ -314,7 +314,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_front, offset_a2 + angle_q2_front_down*RADIAN,
                     offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_front_down)*RADIAN,
                 )
-                if refusal_front == 0.0
+                if refusal_front == 0
                 else None
             ),
             (
@@ -322,7 +322,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_back, offset_a2 + angle_q2_back_down*RADIAN,
                     offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_back_down)*RADIAN,
                 )
-                if refusal_back == 0.0
+                if refusal_back == 0
                 else None
             ),
             (
@@ -330,7 +330,7 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_front, offset_a2 + angle_q2_front_up*RADIAN,
                     offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_front_down)*RADIAN,
                 )
-                if refusal_front == 0.0
+                if refusal_front == 0
                 else None
             ),
             (
@@ -338,12 +338,12 @@ def unrolled(k: Constants) -> Unrolled:
                     axis_a1_back, offset_a2 + angle_q2_back_up*RADIAN,
                     offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_back_down)*RADIAN,
                 )
-                if refusal_back == 0.0
+                if refusal_back == 0
                 else None
             ),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_arm, sigma_elbow = signs

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.scara2_z import Constants
 
 
@@ -39,7 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
     arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_z,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2, _ = reference
@@ -48,7 +48,7 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
         ):
-            return 2*(2.0,)
+            return 2*(2,)
         reach = sqrt(x*x + y*y)
         arm_length_1_minus_reach = arm_length_1 - reach
         arm_length_1_plus_reach = arm_length_1 + reach
@@ -59,11 +59,11 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
-            return 2*(3.0,)
+            return 2*(3,)
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return 2*(3.0,)
+            return 2*(3,)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -77,21 +77,21 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_right = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
         # limits of A1, limits of A2
         refusal_right = (
-            0.0
+            0
             if (axis_a1_right >= lowest_a1) and (axis_a2_right >= lowest_a2) and (
                 axis_a1_right <= highest_a1
             ) and (axis_a2_right <= highest_a2)
-            else 3.0
+            else 3
         )
         axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
@@ -101,15 +101,15 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
         # limits of A1, limits of A2
         refusal_left = (
-            0.0
+            0
             if (axis_a1_left >= lowest_a1) and (axis_a2_left >= lowest_a2) and (
                 axis_a1_left <= highest_a1
             ) and (axis_a2_left <= highest_a2)
-            else 3.0
+            else 3
         )
         return (
-            ((axis_a1_right, axis_a2_right, axis_z) if refusal_right == 0.0 else refusal_right),
-            ((axis_a1_left, axis_a2_left, axis_z) if refusal_left == 0.0 else refusal_left),
+            ((axis_a1_right, axis_a2_right, axis_z) if refusal_right == 0 else refusal_right),
+            ((axis_a1_left, axis_a2_left, axis_z) if refusal_left == 0 else refusal_left),
         )
 
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -147,7 +147,7 @@ def unrolled(k: Constants) -> Unrolled:
             (offset_a1 + angle_a1_left*RADIAN, offset_a2_times_2 - axis_a2, axis_z),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         (sigma_elbow,) = signs

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.scara3_z import Constants
 
 
@@ -44,7 +44,7 @@ def unrolled(k: Constants) -> Unrolled:
     arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_z,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
@@ -54,13 +54,13 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
-            return 2*(2.0,)
+            return 2*(2,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return 2*(3.0,)
+            return 2*(3,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
         wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
@@ -76,11 +76,11 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
-            return 2*(3.0,)
+            return 2*(3,)
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return 2*(3.0,)
+            return 2*(3,)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -94,28 +94,28 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_right = offset_a2 + angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_right = offset_a3 + (angle_heading - angle_a1_right - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a3_right - open_a3 < 179.999999999:
             axis_a3_right = nearest_period(axis_a3_right, open_a3)
         # limits of A1, limits of A2, limits of A3
         refusal_right = (
-            0.0
+            0
             if (axis_a1_right >= lowest_a1) and (axis_a2_right >= lowest_a2) and (axis_a3_right >= lowest_a3) and (
                 axis_a1_right <= highest_a1
             ) and (axis_a2_right <= highest_a2) and (axis_a3_right <= highest_a3)
-            else 3.0
+            else 3
         )
         axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
@@ -129,15 +129,15 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a3_left = nearest_period(axis_a3_left, open_a3)
         # limits of A1, limits of A2, limits of A3
         refusal_left = (
-            0.0
+            0
             if (axis_a1_left >= lowest_a1) and (axis_a2_left >= lowest_a2) and (axis_a3_left >= lowest_a3) and (
                 axis_a1_left <= highest_a1
             ) and (axis_a2_left <= highest_a2) and (axis_a3_left <= highest_a3)
-            else 3.0
+            else 3
         )
         return (
-            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_z) if refusal_right == 0.0 else refusal_right),
-            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_z) if refusal_left == 0.0 else refusal_left),
+            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_z) if refusal_right == 0 else refusal_right),
+            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_z) if refusal_left == 0 else refusal_left),
         )
 
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -190,7 +190,7 @@ def unrolled(k: Constants) -> Unrolled:
             (offset_a1 + angle_a1_left*RADIAN, offset_a2 - part_of_axis_a2, axis_a3_left, axis_z),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.scara4_zccc import Constants
 
 
@@ -44,7 +44,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
@@ -54,13 +54,13 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a2 <= 1e9
             and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9
         ):
-            return 2*(2.0,)
+            return 2*(2,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return 2*(3.0,)
+            return 2*(3,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
@@ -76,11 +76,11 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -scale_a3_squared_times_rounding):
-            return 2*(3.0,)
+            return 2*(3,)
         axis_a1 = offset_a1 + z
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return 2*(3.0,)
+            return 2*(3,)
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
@@ -94,28 +94,28 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_a2_right = free_a2
             angle_a2_left = free_a2
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_right = offset_a2 + angle_a2_right/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
         angle_a3 = arctan2(sin_a3 + 0.0, cos_a3 + 0.0)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         axis_a3_right = offset_a3 + angle_a3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_right - open_a3 < 179.999999999:
             axis_a3_right = nearest_period(axis_a3_right, open_a3)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
         # a4: what the sum a234 leaves; A4: its turn
         axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3)/DEGREE
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
         # limits of A2, limits of A3, limits of A4
         refusal_right = (
-            0.0
+            0
             if (axis_a2_right >= lowest_a2) and (axis_a3_right >= lowest_a3) and (axis_a4_right >= lowest_a4) and (
                 axis_a2_right <= highest_a2
             ) and (axis_a3_right <= highest_a3) and (axis_a4_right <= highest_a4)
-            else 3.0
+            else 3
         )
         axis_a2_left = offset_a2 + angle_a2_left/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
@@ -129,15 +129,15 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
         # limits of A2, limits of A3, limits of A4
         refusal_left = (
-            0.0
+            0
             if (axis_a2_left >= lowest_a2) and (axis_a3_left >= lowest_a3) and (axis_a4_left >= lowest_a4) and (
                 axis_a2_left <= highest_a2
             ) and (axis_a3_left <= highest_a3) and (axis_a4_left <= highest_a4)
-            else 3.0
+            else 3
         )
         return (
-            ((axis_a1, axis_a2_right, axis_a3_right, axis_a4_right) if refusal_right == 0.0 else refusal_right),
-            ((axis_a1, axis_a2_left, axis_a3_left, axis_a4_left) if refusal_left == 0.0 else refusal_left),
+            ((axis_a1, axis_a2_right, axis_a3_right, axis_a4_right) if refusal_right == 0 else refusal_right),
+            ((axis_a1, axis_a2_left, axis_a3_left, axis_a4_left) if refusal_left == 0 else refusal_left),
         )
 
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -190,7 +190,7 @@ def unrolled(k: Constants) -> Unrolled:
             (axis_a1, offset_a2 + angle_a2_left*RADIAN, offset_a3 - part_of_axis_a3, axis_a4_left),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.scara4_zccoupled_type1 import Constants
 
 
@@ -45,7 +45,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
@@ -55,13 +55,13 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a4 <= 1e9
         ):
-            return 2*(2.0,)
+            return 2*(2,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return 2*(3.0,)
+            return 2*(3,)
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
@@ -72,7 +72,7 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
-            return 2*(3.0,)
+            return 2*(3,)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -86,17 +86,17 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_right = offset_a2 + angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
         angle_heading = arctan2(heading_across + 0.0, heading_along + 0.0)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
         axis_a4_right = offset_a4 + (angle_heading - angle_a1_right - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
@@ -106,11 +106,11 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3_right = a3 + offset_a3
         # limits of A1, limits of A2, limits of A4, limits of A3
         refusal_right = (
-            0.0
+            0
             if (axis_a1_right >= lowest_a1) and (axis_a2_right >= lowest_a2) and (axis_a3_right >= lowest_a3) and (axis_a4_right >= lowest_a4) and (
                 axis_a1_right <= highest_a1
             ) and (axis_a2_right <= highest_a2) and (axis_a3_right <= highest_a3) and (axis_a4_right <= highest_a4)
-            else 3.0
+            else 3
         )
         axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
@@ -127,15 +127,15 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3_left = a3 + offset_a3
         # limits of A1, limits of A2, limits of A4, limits of A3
         refusal_left = (
-            0.0
+            0
             if (axis_a1_left >= lowest_a1) and (axis_a2_left >= lowest_a2) and (axis_a3_left >= lowest_a3) and (axis_a4_left >= lowest_a4) and (
                 axis_a1_left <= highest_a1
             ) and (axis_a2_left <= highest_a2) and (axis_a3_left <= highest_a3) and (axis_a4_left <= highest_a4)
-            else 3.0
+            else 3
         )
         return (
-            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right) if refusal_right == 0.0 else refusal_right),
-            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_a4_left) if refusal_left == 0.0 else refusal_left),
+            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right) if refusal_right == 0 else refusal_right),
+            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_a4_left) if refusal_left == 0 else refusal_left),
         )
 
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -175,7 +175,7 @@ def unrolled(k: Constants) -> Unrolled:
         angle_a2 = arctan2(sin_a2, cos_a2)
         part_of_axis_a2 = angle_a2*RADIAN
         angle_heading = arctan2(heading_across, heading_along)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
         axis_a4_right = offset_a4 + (angle_heading - angle_a1_right - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
@@ -193,7 +193,7 @@ def unrolled(k: Constants) -> Unrolled:
             (offset_a1 + angle_a1_left*RADIAN, offset_a2 - part_of_axis_a2, a3_left + offset_a3, axis_a4_left),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
@@ -223,7 +223,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1 = (ref_a1 - offset_a1)*DEGREE
         angle_a2 = arctan2(sin_a2, cos_a2)
         angle_heading = arctan2(heading_across, heading_along)
-        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
         axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a4 - open_a4 < 179.999999999:

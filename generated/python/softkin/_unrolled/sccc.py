@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.sccc import Constants
 
 
@@ -48,7 +48,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
@@ -58,16 +58,16 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
-            return 2*(2.0,)
+            return 2*(2,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return 2*(3.0,)
+            return 2*(3,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return 2*(3.0,)
+            return 2*(3,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
@@ -83,7 +83,7 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
-            return 2*(3.0,)
+            return 2*(3,)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -97,7 +97,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
@@ -108,7 +108,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
         # A2: where its turn is open
-        if single_a2 > 0.0:
+        if single_a2:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
         else:
@@ -127,7 +127,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
         # A3: where its turn is open
-        if single_a3 > 0.0:
+        if single_a3:
             open_a3_right = mid_a3
             open_a3_left = mid_a3
         else:
@@ -149,11 +149,11 @@ def unrolled(k: Constants) -> Unrolled:
         limit_value_joint_3 = limit_a3/DEGREE  # joint 3
         # limits of A1, limits of A2, limits of A3, limits of joint 2, limits of joint 3
         refusal_right = (
-            0.0
+            0
             if (axis_a1_right >= lowest_a1) and (axis_a2_right >= lowest_a2) and (axis_a3_right >= lowest_a3) and (limit_value_joint_2 >= lowest_joint_2) and (limit_value_joint_3 >= lowest_joint_3) and (axis_a1_right <= highest_a1) and (axis_a2_right <= highest_a2) and (axis_a3_right <= highest_a3) and (
                 limit_value_joint_2 <= highest_joint_2
             ) and (limit_value_joint_3 <= highest_joint_3)
-            else 3.0
+            else 3
         )
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_left = (
@@ -167,15 +167,15 @@ def unrolled(k: Constants) -> Unrolled:
         limit_value_joint_3 = limit_a3/DEGREE  # joint 3
         # limits of A1, limits of A2, limits of A3, limits of joint 2, limits of joint 3
         refusal_left = (
-            0.0
+            0
             if (axis_a1_left >= lowest_a1) and (axis_a2_left >= lowest_a2) and (axis_a3_left >= lowest_a3) and (limit_value_joint_2 >= lowest_joint_2) and (limit_value_joint_3 >= lowest_joint_3) and (axis_a1_left <= highest_a1) and (axis_a2_left <= highest_a2) and (axis_a3_left <= highest_a3) and (
                 limit_value_joint_2 <= highest_joint_2
             ) and (limit_value_joint_3 <= highest_joint_3)
-            else 3.0
+            else 3
         )
         return (
-            ((axis_a1_right, axis_a2_right, axis_a3_right) if refusal_right == 0.0 else refusal_right),
-            ((axis_a1_left, axis_a2_left, axis_a3_left) if refusal_left == 0.0 else refusal_left),
+            ((axis_a1_right, axis_a2_right, axis_a3_right) if refusal_right == 0 else refusal_right),
+            ((axis_a1_left, axis_a2_left, axis_a3_left) if refusal_left == 0 else refusal_left),
         )
 
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -220,7 +220,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
@@ -231,7 +231,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
         # A2: where its turn is open
-        if single_a2 > 0.0:
+        if single_a2:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
         else:
@@ -261,7 +261,7 @@ def unrolled(k: Constants) -> Unrolled:
             (axis_a1_left, axis_a2_left, axis_a3_left),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
@@ -298,14 +298,14 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1 = free_a1
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - open_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, open_a1)
         angle_a2 = arctan2(sin_a2, cos_a2)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
         # A2: where its turn is open
-        if single_a2 > 0.0:
+        if single_a2:
             open_a2 = mid_a2
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Unrolled
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.tgantry2 import Constants
 
 
@@ -28,34 +28,34 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_plane = 1e-6*machine_scale
     no_offsets = not any((offset_a, offset_b,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return (2.0,)
+            return (2,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return (3.0,)
+            return (3,)
         a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
         # limits of A
         if not (axis_a >= lowest_a and axis_a <= highest_a):
-            return (3.0,)
+            return (3,)
         axis_b = offset_b + (x + y)
         # limits of B
         if not (axis_b >= lowest_b and axis_b <= highest_b):
-            return (3.0,)
+            return (3,)
         limit_a = axis_a - offset_a
         limit_b = axis_b - offset_b
         limit_value_x = 0.5*limit_a + 0.5*limit_b  # X of the carriage
         # limits of X of the carriage
         if not (limit_value_x >= lowest_x and limit_value_x <= highest_x):
-            return (3.0,)
+            return (3,)
         limit_value_y = 0.5*limit_b - 0.5*limit_a  # Y of the carriage
         # limits of Y of the carriage
         if not (limit_value_y >= lowest_y and limit_value_y <= highest_y):
-            return (3.0,)
+            return (3,)
         return (
             (axis_a, axis_b),
         )
@@ -71,7 +71,7 @@ def unrolled(k: Constants) -> Unrolled:
             (a + offset_a, offset_b + (x + y)),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Unrolled
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.tgantry3 import Constants
 
 
@@ -29,35 +29,35 @@ def unrolled(k: Constants) -> Unrolled:
     offset_z = k.offset_z
     no_offsets = not any((offset_a, offset_b, offset_z,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return (2.0,)
+            return (2,)
         a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
         # limits of A
         if not (axis_a >= lowest_a and axis_a <= highest_a):
-            return (3.0,)
+            return (3,)
         axis_b = offset_b + (x + y)
         # limits of B
         if not (axis_b >= lowest_b and axis_b <= highest_b):
-            return (3.0,)
+            return (3,)
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return (3.0,)
+            return (3,)
         limit_a = axis_a - offset_a
         limit_b = axis_b - offset_b
         limit_value_x = 0.5*limit_a + 0.5*limit_b  # X of the carriage
         # limits of X of the carriage
         if not (limit_value_x >= lowest_x and limit_value_x <= highest_x):
-            return (3.0,)
+            return (3,)
         limit_value_y = 0.5*limit_b - 0.5*limit_a  # Y of the carriage
         # limits of Y of the carriage
         if not (limit_value_y >= lowest_y and limit_value_y <= highest_y):
-            return (3.0,)
+            return (3,)
         return (
             (axis_a, axis_b, axis_z),
         )
@@ -70,7 +70,7 @@ def unrolled(k: Constants) -> Unrolled:
             (a + offset_a, offset_b + (x + y), offset_z + z),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         a = x - y  # a, b: affine in the x and y equations

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 from softkin._core import Unrolled
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.tool import Constants
 
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         return (
             (),
@@ -27,7 +27,7 @@ def unrolled(k: Constants) -> Unrolled:
             (),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         return ()
 

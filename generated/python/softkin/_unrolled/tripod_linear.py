@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import root, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.tripod_linear import Constants
 
 
@@ -52,12 +52,12 @@ def unrolled(k: Constants) -> Unrolled:
     assembly_sign_by_constant_part = assembly_sign/(arm_length*arm_length*arm_length)
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return 8*(2.0,)
+            return 8*(2,)
         part_of_root_square_a1 = arm_length_squared - z*z + z*z*cos_rail_angle_squared
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
         # a1: quadratic in the rod 1 equation
@@ -67,7 +67,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
-            return 8*(3.0,)
+            return 8*(3,)
         span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
         part_of_root_square_a2 = (
             part_of_root_square_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
@@ -82,7 +82,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_squared_times_rounding):
-            return 8*(3.0,)
+            return 8*(3,)
         span_3_y = constant_part + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
@@ -92,16 +92,16 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
-            return 8*(3.0,)
+            return 8*(3,)
         # ball joint of rod 1
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
-            return 8*(3.0,)
+            return 8*(3,)
         # ball joint of rod 2
         if not (abs(one_by_2_by_arm_length*y + root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
-            return 8*(3.0,)
+            return 8*(3,)
         # ball joint of rod 3
         if not (abs(one_by_2_by_arm_length*y - root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
-            return 8*(3.0,)
+            return 8*(3,)
         cos_rail_angle_times_z = z*cos_rail_angle
         part_of_middle_a2 = cos_rail_angle_times_z - span_2_x*sin_rail_angle_by_2
         middle_a2 = -part_of_middle_a2 - root_of_3_times_sin_rail_angle_by_2*span_2_y
@@ -165,9 +165,9 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_below_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
+                    refusal_below_below_below_2 = 0 if type2_rods_coplanar_below_below >= min_type2_margin else 3
                 else:
-                    refusal_below_below_below_2 = 3.0
+                    refusal_below_below_below_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_below_above = (
@@ -178,12 +178,12 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_below_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
+                    refusal_below_below_above_2 = 0 if type2_rods_coplanar_below_above >= min_type2_margin else 3
                 else:
-                    refusal_below_below_above_2 = 3.0
+                    refusal_below_below_above_2 = 3
             else:
-                refusal_below_below_below_2 = 3.0
-                refusal_below_below_above_2 = 3.0
+                refusal_below_below_below_2 = 3
+                refusal_below_below_above_2 = 3
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
@@ -195,9 +195,9 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_below_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
+                    refusal_below_above_below_2 = 0 if type2_rods_coplanar_above_below >= min_type2_margin else 3
                 else:
-                    refusal_below_above_below_2 = 3.0
+                    refusal_below_above_below_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_above_above = (
@@ -208,17 +208,17 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_below_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
+                    refusal_below_above_above_2 = 0 if type2_rods_coplanar_above_above >= min_type2_margin else 3
                 else:
-                    refusal_below_above_above_2 = 3.0
+                    refusal_below_above_above_2 = 3
             else:
-                refusal_below_above_below_2 = 3.0
-                refusal_below_above_above_2 = 3.0
+                refusal_below_above_below_2 = 3
+                refusal_below_above_above_2 = 3
         else:
-            refusal_below_below_below_2 = 3.0
-            refusal_below_below_above_2 = 3.0
-            refusal_below_above_below_2 = 3.0
-            refusal_below_above_above_2 = 3.0
+            refusal_below_below_below_2 = 3
+            refusal_below_below_above_2 = 3
+            refusal_below_above_below_2 = 3
+            refusal_below_above_above_2 = 3
         minus_a1 = middle_a1 + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         axis_a1_above = offset_a1 - minus_a1
         if axis_a1_above >= lowest_a1 and axis_a1_above <= highest_a1:
@@ -237,9 +237,9 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_above_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
+                    refusal_above_below_below_2 = 0 if type2_rods_coplanar_below_below >= min_type2_margin else 3
                 else:
-                    refusal_above_below_below_2 = 3.0
+                    refusal_above_below_below_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_below_above = (
@@ -250,12 +250,12 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_above_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
+                    refusal_above_below_above_2 = 0 if type2_rods_coplanar_below_above >= min_type2_margin else 3
                 else:
-                    refusal_above_below_above_2 = 3.0
+                    refusal_above_below_above_2 = 3
             else:
-                refusal_above_below_below_2 = 3.0
-                refusal_above_below_above_2 = 3.0
+                refusal_above_below_below_2 = 3
+                refusal_above_below_above_2 = 3
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
@@ -267,9 +267,9 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_above_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
+                    refusal_above_above_below_2 = 0 if type2_rods_coplanar_above_below >= min_type2_margin else 3
                 else:
-                    refusal_above_above_below_2 = 3.0
+                    refusal_above_above_below_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_above_above = (
@@ -280,56 +280,56 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_above_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
+                    refusal_above_above_above_2 = 0 if type2_rods_coplanar_above_above >= min_type2_margin else 3
                 else:
-                    refusal_above_above_above_2 = 3.0
+                    refusal_above_above_above_2 = 3
             else:
-                refusal_above_above_below_2 = 3.0
-                refusal_above_above_above_2 = 3.0
+                refusal_above_above_below_2 = 3
+                refusal_above_above_above_2 = 3
         else:
-            refusal_above_below_below_2 = 3.0
-            refusal_above_below_above_2 = 3.0
-            refusal_above_above_below_2 = 3.0
-            refusal_above_above_above_2 = 3.0
+            refusal_above_below_below_2 = 3
+            refusal_above_below_above_2 = 3
+            refusal_above_above_below_2 = 3
+            refusal_above_above_above_2 = 3
         return (
             (
                 (axis_a1_below, axis_a2_below, axis_a3_below)
-                if refusal_below_below_below_2 == 0.0
+                if refusal_below_below_below_2 == 0
                 else refusal_below_below_below_2
             ),
             (
                 (axis_a1_above, axis_a2_below, axis_a3_below)
-                if refusal_above_below_below_2 == 0.0
+                if refusal_above_below_below_2 == 0
                 else refusal_above_below_below_2
             ),
             (
                 (axis_a1_below, axis_a2_above, axis_a3_below)
-                if refusal_below_above_below_2 == 0.0
+                if refusal_below_above_below_2 == 0
                 else refusal_below_above_below_2
             ),
             (
                 (axis_a1_above, axis_a2_above, axis_a3_below)
-                if refusal_above_above_below_2 == 0.0
+                if refusal_above_above_below_2 == 0
                 else refusal_above_above_below_2
             ),
             (
                 (axis_a1_below, axis_a2_below, axis_a3_above)
-                if refusal_below_below_above_2 == 0.0
+                if refusal_below_below_above_2 == 0
                 else refusal_below_below_above_2
             ),
             (
                 (axis_a1_above, axis_a2_below, axis_a3_above)
-                if refusal_above_below_above_2 == 0.0
+                if refusal_above_below_above_2 == 0
                 else refusal_above_below_above_2
             ),
             (
                 (axis_a1_below, axis_a2_above, axis_a3_above)
-                if refusal_below_above_above_2 == 0.0
+                if refusal_below_above_above_2 == 0
                 else refusal_below_above_above_2
             ),
             (
                 (axis_a1_above, axis_a2_above, axis_a3_above)
-                if refusal_above_above_above_2 == 0.0
+                if refusal_above_above_above_2 == 0
                 else refusal_above_above_above_2
             ),
         )
@@ -415,7 +415,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = offset_a1 - minus_a1
         axis_a2_below = a2 + offset_a2
         axis_a3_below = a3 + offset_a3
@@ -436,7 +436,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_above = a3 + offset_a3
         a2 = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
@@ -457,7 +457,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_above = a2 + offset_a2
         part_of_type2_rods_coplanar_below_above_below_above_below_above_3 = (
             rod_2_x_above*rod_3_z_above*y - rod_2_z_above*rod_3_x_above*y
@@ -471,7 +471,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         minus_a1 = middle_a1 + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         pivot_1_x = inner_radius_minus_outer_radius + minus_a1*sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
@@ -486,7 +486,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_above = offset_a1 - minus_a1
         type2_rods_coplanar = (
             (
@@ -497,7 +497,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_above*rod_3_z_below + rod_1_z*rod_2_x_above*rod_3_y_below
@@ -507,7 +507,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_above*rod_3_z_above + rod_1_z*rod_2_x_above*rod_3_y_above
@@ -517,19 +517,19 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
-            ((axis_a1_below, axis_a2_below, axis_a3_below) if refusal_below_below_below == 0.0 else None),
-            ((axis_a1_above, axis_a2_below, axis_a3_below) if refusal_above_below_below == 0.0 else None),
-            ((axis_a1_below, axis_a2_above, axis_a3_below) if refusal_below_above_below == 0.0 else None),
-            ((axis_a1_above, axis_a2_above, axis_a3_below) if refusal_above_above_below == 0.0 else None),
-            ((axis_a1_below, axis_a2_below, axis_a3_above) if refusal_below_below_above == 0.0 else None),
-            ((axis_a1_above, axis_a2_below, axis_a3_above) if refusal_above_below_above == 0.0 else None),
-            ((axis_a1_below, axis_a2_above, axis_a3_above) if refusal_below_above_above == 0.0 else None),
-            ((axis_a1_above, axis_a2_above, axis_a3_above) if refusal_above_above_above == 0.0 else None),
+            ((axis_a1_below, axis_a2_below, axis_a3_below) if refusal_below_below_below == 0 else None),
+            ((axis_a1_above, axis_a2_below, axis_a3_below) if refusal_above_below_below == 0 else None),
+            ((axis_a1_below, axis_a2_above, axis_a3_below) if refusal_below_above_below == 0 else None),
+            ((axis_a1_above, axis_a2_above, axis_a3_below) if refusal_above_above_below == 0 else None),
+            ((axis_a1_below, axis_a2_below, axis_a3_above) if refusal_below_below_above == 0 else None),
+            ((axis_a1_above, axis_a2_below, axis_a3_above) if refusal_above_below_above == 0 else None),
+            ((axis_a1_below, axis_a2_above, axis_a3_above) if refusal_below_above_above == 0 else None),
+            ((axis_a1_above, axis_a2_above, axis_a3_above) if refusal_above_above_above == 0 else None),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.tripod_p3z import Constants
 
 
@@ -51,12 +51,12 @@ def unrolled(k: Constants) -> Unrolled:
     assembly_sign_by_constant_part = assembly_sign/(arm_length*arm_length*arm_length)
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return 8*(2.0,)
+            return 8*(2,)
         span_1_x = constant_part + x  # rod 1
         span_1_y = constant_part_2 + y  # rod 1
         # a1: quadratic in the rod 1 equation
@@ -66,7 +66,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             # rod 1 cannot reach
             if not (root_square_a1 >= -arm_length_squared_times_rounding):
-                return 8*(3.0,)
+                return 8*(3,)
             a1 = z
         span_2_x = constant_part_3 + x  # rod 2
         span_2_y = constant_part_4 + y  # rod 2
@@ -77,7 +77,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             # rod 2 cannot reach
             if not (root_square_a2 >= -arm_length_squared_times_rounding):
-                return 8*(3.0,)
+                return 8*(3,)
             a2 = z
         span_3_x = constant_part_5 + x  # rod 3
         span_3_y = constant_part_6 + y  # rod 3
@@ -88,7 +88,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             # rod 3 cannot reach
             if not (root_square_a3 >= -arm_length_squared_times_rounding):
-                return 8*(3.0,)
+                return 8*(3,)
             a3 = z
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
@@ -129,9 +129,9 @@ def unrolled(k: Constants) -> Unrolled:
                         (part_of_type2_rods_coplanar_above_above_above_4 - part_of_type2_rods_coplanar_above_above_above_2)
                         *assembly_sign_by_constant_part
                     )
-                    refusal_above_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
+                    refusal_above_above_above_2 = 0 if type2_rods_coplanar_above_above >= min_type2_margin else 3
                 else:
-                    refusal_above_above_above_2 = 3.0
+                    refusal_above_above_above_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_above_below = (
@@ -141,12 +141,12 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_above_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
+                    refusal_above_above_below_2 = 0 if type2_rods_coplanar_above_below >= min_type2_margin else 3
                 else:
-                    refusal_above_above_below_2 = 3.0
+                    refusal_above_above_below_2 = 3
             else:
-                refusal_above_above_above_2 = 3.0
-                refusal_above_above_below_2 = 3.0
+                refusal_above_above_above_2 = 3
+                refusal_above_above_below_2 = 3
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
@@ -157,9 +157,9 @@ def unrolled(k: Constants) -> Unrolled:
                             - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
                         )
                     )
-                    refusal_above_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
+                    refusal_above_below_above_2 = 0 if type2_rods_coplanar_below_above >= min_type2_margin else 3
                 else:
-                    refusal_above_below_above_2 = 3.0
+                    refusal_above_below_above_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_below_below = (
@@ -169,17 +169,17 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_above_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
+                    refusal_above_below_below_2 = 0 if type2_rods_coplanar_below_below >= min_type2_margin else 3
                 else:
-                    refusal_above_below_below_2 = 3.0
+                    refusal_above_below_below_2 = 3
             else:
-                refusal_above_below_above_2 = 3.0
-                refusal_above_below_below_2 = 3.0
+                refusal_above_below_above_2 = 3
+                refusal_above_below_below_2 = 3
         else:
-            refusal_above_above_above_2 = 3.0
-            refusal_above_above_below_2 = 3.0
-            refusal_above_below_above_2 = 3.0
-            refusal_above_below_below_2 = 3.0
+            refusal_above_above_above_2 = 3
+            refusal_above_above_below_2 = 3
+            refusal_above_below_above_2 = 3
+            refusal_above_below_below_2 = 3
         a1 = z - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         axis_a1_below = a1 + offset_a1
         if axis_a1_below >= lowest_a1 and axis_a1_below <= highest_a1:
@@ -204,9 +204,9 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_below_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
+                    refusal_below_above_above_2 = 0 if type2_rods_coplanar_above_above >= min_type2_margin else 3
                 else:
-                    refusal_below_above_above_2 = 3.0
+                    refusal_below_above_above_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_above_below = (
@@ -216,12 +216,12 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_below_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
+                    refusal_below_above_below_2 = 0 if type2_rods_coplanar_above_below >= min_type2_margin else 3
                 else:
-                    refusal_below_above_below_2 = 3.0
+                    refusal_below_above_below_2 = 3
             else:
-                refusal_below_above_above_2 = 3.0
-                refusal_below_above_below_2 = 3.0
+                refusal_below_above_above_2 = 3
+                refusal_below_above_below_2 = 3
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
@@ -232,9 +232,9 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_below_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
+                    refusal_below_below_above_2 = 0 if type2_rods_coplanar_below_above >= min_type2_margin else 3
                 else:
-                    refusal_below_below_above_2 = 3.0
+                    refusal_below_below_above_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_below_below = (
@@ -244,56 +244,56 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_below_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
+                    refusal_below_below_below_2 = 0 if type2_rods_coplanar_below_below >= min_type2_margin else 3
                 else:
-                    refusal_below_below_below_2 = 3.0
+                    refusal_below_below_below_2 = 3
             else:
-                refusal_below_below_above_2 = 3.0
-                refusal_below_below_below_2 = 3.0
+                refusal_below_below_above_2 = 3
+                refusal_below_below_below_2 = 3
         else:
-            refusal_below_above_above_2 = 3.0
-            refusal_below_above_below_2 = 3.0
-            refusal_below_below_above_2 = 3.0
-            refusal_below_below_below_2 = 3.0
+            refusal_below_above_above_2 = 3
+            refusal_below_above_below_2 = 3
+            refusal_below_below_above_2 = 3
+            refusal_below_below_below_2 = 3
         return (
             (
                 (axis_a1_above, axis_a2_above, axis_a3_above)
-                if refusal_above_above_above_2 == 0.0
+                if refusal_above_above_above_2 == 0
                 else refusal_above_above_above_2
             ),
             (
                 (axis_a1_below, axis_a2_above, axis_a3_above)
-                if refusal_below_above_above_2 == 0.0
+                if refusal_below_above_above_2 == 0
                 else refusal_below_above_above_2
             ),
             (
                 (axis_a1_above, axis_a2_below, axis_a3_above)
-                if refusal_above_below_above_2 == 0.0
+                if refusal_above_below_above_2 == 0
                 else refusal_above_below_above_2
             ),
             (
                 (axis_a1_below, axis_a2_below, axis_a3_above)
-                if refusal_below_below_above_2 == 0.0
+                if refusal_below_below_above_2 == 0
                 else refusal_below_below_above_2
             ),
             (
                 (axis_a1_above, axis_a2_above, axis_a3_below)
-                if refusal_above_above_below_2 == 0.0
+                if refusal_above_above_below_2 == 0
                 else refusal_above_above_below_2
             ),
             (
                 (axis_a1_below, axis_a2_above, axis_a3_below)
-                if refusal_below_above_below_2 == 0.0
+                if refusal_below_above_below_2 == 0
                 else refusal_below_above_below_2
             ),
             (
                 (axis_a1_above, axis_a2_below, axis_a3_below)
-                if refusal_above_below_below_2 == 0.0
+                if refusal_above_below_below_2 == 0
                 else refusal_above_below_below_2
             ),
             (
                 (axis_a1_below, axis_a2_below, axis_a3_below)
-                if refusal_below_below_below_2 == 0.0
+                if refusal_below_below_below_2 == 0
                 else refusal_below_below_below_2
             ),
         )
@@ -354,7 +354,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_above = a1 + offset_a1
         axis_a2_above = a2 + offset_a2
         axis_a3_above = a3 + offset_a3
@@ -372,7 +372,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_below = a3 + offset_a3
         a2 = z - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         rod_2_z = z - a2
@@ -387,7 +387,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_below = a2 + offset_a2
         type2_rods_coplanar = (
             (
@@ -397,7 +397,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         a1 = z - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         rod_1_z = z - a1
         part_of_type2_rods_coplanar_above_below_above_below_above_below_3 = (
@@ -414,7 +414,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_below = a1 + offset_a1
         part_of_type2_rods_coplanar_above_below_above_below_above_below_6 = (
             part_of_type2_rods_coplanar_above_below_above
@@ -428,7 +428,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             (
                 part_of_type2_rods_coplanar_above_below_above_below_above_below_5
@@ -437,7 +437,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             (
                 part_of_type2_rods_coplanar_above_below_above_below_above_below_6
@@ -446,19 +446,19 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
-            ((axis_a1_above, axis_a2_above, axis_a3_above) if refusal_above_above_above == 0.0 else None),
-            ((axis_a1_below, axis_a2_above, axis_a3_above) if refusal_below_above_above == 0.0 else None),
-            ((axis_a1_above, axis_a2_below, axis_a3_above) if refusal_above_below_above == 0.0 else None),
-            ((axis_a1_below, axis_a2_below, axis_a3_above) if refusal_below_below_above == 0.0 else None),
-            ((axis_a1_above, axis_a2_above, axis_a3_below) if refusal_above_above_below == 0.0 else None),
-            ((axis_a1_below, axis_a2_above, axis_a3_below) if refusal_below_above_below == 0.0 else None),
-            ((axis_a1_above, axis_a2_below, axis_a3_below) if refusal_above_below_below == 0.0 else None),
-            ((axis_a1_below, axis_a2_below, axis_a3_below) if refusal_below_below_below == 0.0 else None),
+            ((axis_a1_above, axis_a2_above, axis_a3_above) if refusal_above_above_above == 0 else None),
+            ((axis_a1_below, axis_a2_above, axis_a3_above) if refusal_below_above_above == 0 else None),
+            ((axis_a1_above, axis_a2_below, axis_a3_above) if refusal_above_below_above == 0 else None),
+            ((axis_a1_below, axis_a2_below, axis_a3_above) if refusal_below_below_above == 0 else None),
+            ((axis_a1_above, axis_a2_above, axis_a3_below) if refusal_above_above_below == 0 else None),
+            ((axis_a1_below, axis_a2_above, axis_a3_below) if refusal_below_above_below == 0 else None),
+            ((axis_a1_above, axis_a2_below, axis_a3_below) if refusal_above_below_below == 0 else None),
+            ((axis_a1_below, axis_a2_below, axis_a3_below) if refusal_below_below_below == 0 else None),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs

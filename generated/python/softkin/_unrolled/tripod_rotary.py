@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, root, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.tripod_rotary import Constants
 
 
@@ -52,7 +52,7 @@ def unrolled(k: Constants) -> Unrolled:
     assembly_sign_by_constant_part = assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2, ref_a3 = reference
@@ -61,13 +61,13 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
-            return 8*(2.0,)
+            return 8*(2,)
         span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1
         span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
-            return 8*(3.0,)
+            return 8*(3,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # cosine times the scale, seen from the origin
@@ -79,7 +79,7 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return 8*(3.0,)
+            return 8*(3,)
         span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
         span_2_y = constant_part_2 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
@@ -87,7 +87,7 @@ def unrolled(k: Constants) -> Unrolled:
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > share_of_arm_length_1):
-            return 8*(3.0,)
+            return 8*(3,)
         divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         part_of_scaled_cosine_a2 = (
@@ -101,13 +101,13 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return 8*(3.0,)
+            return 8*(3,)
         span_3_y = y - constant_part_2  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > share_of_arm_length_1):
-            return 8*(3.0,)
+            return 8*(3,)
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
@@ -117,16 +117,16 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-            return 8*(3.0,)
+            return 8*(3,)
         # ball joint of rod 1
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
-            return 8*(3.0,)
+            return 8*(3,)
         # ball joint of rod 2
         if not (abs(one_by_2_by_arm_length_2*y + root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
-            return 8*(3.0,)
+            return 8*(3,)
         # ball joint of rod 3
         if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
-            return 8*(3.0,)
+            return 8*(3,)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
@@ -170,15 +170,15 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_y_outward = y - pivot_2_y
         pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_outward = y - pivot_3_y
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_outward - open_a3 < 179.999999999:
             axis_a3_outward = nearest_period(axis_a3_outward, open_a3)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
             axis_a2_outward = nearest_period(axis_a2_outward, open_a2)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
@@ -229,9 +229,9 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_outward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
+                    refusal_outward_outward_outward_2 = 0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3
                 else:
-                    refusal_outward_outward_outward_2 = 3.0
+                    refusal_outward_outward_outward_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_inward = (
@@ -242,12 +242,12 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_outward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
+                    refusal_outward_outward_inward_2 = 0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3
                 else:
-                    refusal_outward_outward_inward_2 = 3.0
+                    refusal_outward_outward_inward_2 = 3
             else:
-                refusal_outward_outward_outward_2 = 3.0
-                refusal_outward_outward_inward_2 = 3.0
+                refusal_outward_outward_outward_2 = 3
+                refusal_outward_outward_inward_2 = 3
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
@@ -259,9 +259,9 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_outward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
+                    refusal_outward_inward_outward_2 = 0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3
                 else:
-                    refusal_outward_inward_outward_2 = 3.0
+                    refusal_outward_inward_outward_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_inward = (
@@ -272,17 +272,17 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_outward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
+                    refusal_outward_inward_inward_2 = 0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3
                 else:
-                    refusal_outward_inward_inward_2 = 3.0
+                    refusal_outward_inward_inward_2 = 3
             else:
-                refusal_outward_inward_outward_2 = 3.0
-                refusal_outward_inward_inward_2 = 3.0
+                refusal_outward_inward_outward_2 = 3
+                refusal_outward_inward_inward_2 = 3
         else:
-            refusal_outward_outward_outward_2 = 3.0
-            refusal_outward_outward_inward_2 = 3.0
-            refusal_outward_inward_outward_2 = 3.0
-            refusal_outward_inward_inward_2 = 3.0
+            refusal_outward_outward_outward_2 = 3
+            refusal_outward_outward_inward_2 = 3
+            refusal_outward_inward_outward_2 = 3
+            refusal_outward_inward_inward_2 = 3
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
@@ -304,9 +304,9 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_inward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
+                    refusal_inward_outward_outward_2 = 0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3
                 else:
-                    refusal_inward_outward_outward_2 = 3.0
+                    refusal_inward_outward_outward_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_inward = (
@@ -317,12 +317,12 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_inward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
+                    refusal_inward_outward_inward_2 = 0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3
                 else:
-                    refusal_inward_outward_inward_2 = 3.0
+                    refusal_inward_outward_inward_2 = 3
             else:
-                refusal_inward_outward_outward_2 = 3.0
-                refusal_inward_outward_inward_2 = 3.0
+                refusal_inward_outward_outward_2 = 3
+                refusal_inward_outward_inward_2 = 3
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
@@ -334,9 +334,9 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_inward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
+                    refusal_inward_inward_outward_2 = 0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3
                 else:
-                    refusal_inward_inward_outward_2 = 3.0
+                    refusal_inward_inward_outward_2 = 3
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_inward = (
@@ -347,56 +347,56 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    refusal_inward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
+                    refusal_inward_inward_inward_2 = 0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3
                 else:
-                    refusal_inward_inward_inward_2 = 3.0
+                    refusal_inward_inward_inward_2 = 3
             else:
-                refusal_inward_inward_outward_2 = 3.0
-                refusal_inward_inward_inward_2 = 3.0
+                refusal_inward_inward_outward_2 = 3
+                refusal_inward_inward_inward_2 = 3
         else:
-            refusal_inward_outward_outward_2 = 3.0
-            refusal_inward_outward_inward_2 = 3.0
-            refusal_inward_inward_outward_2 = 3.0
-            refusal_inward_inward_inward_2 = 3.0
+            refusal_inward_outward_outward_2 = 3
+            refusal_inward_outward_inward_2 = 3
+            refusal_inward_inward_outward_2 = 3
+            refusal_inward_inward_inward_2 = 3
         return (
             (
                 (axis_a1_outward, axis_a2_outward, axis_a3_outward)
-                if refusal_outward_outward_outward_2 == 0.0
+                if refusal_outward_outward_outward_2 == 0
                 else refusal_outward_outward_outward_2
             ),
             (
                 (axis_a1_inward, axis_a2_outward, axis_a3_outward)
-                if refusal_inward_outward_outward_2 == 0.0
+                if refusal_inward_outward_outward_2 == 0
                 else refusal_inward_outward_outward_2
             ),
             (
                 (axis_a1_outward, axis_a2_inward, axis_a3_outward)
-                if refusal_outward_inward_outward_2 == 0.0
+                if refusal_outward_inward_outward_2 == 0
                 else refusal_outward_inward_outward_2
             ),
             (
                 (axis_a1_inward, axis_a2_inward, axis_a3_outward)
-                if refusal_inward_inward_outward_2 == 0.0
+                if refusal_inward_inward_outward_2 == 0
                 else refusal_inward_inward_outward_2
             ),
             (
                 (axis_a1_outward, axis_a2_outward, axis_a3_inward)
-                if refusal_outward_outward_inward_2 == 0.0
+                if refusal_outward_outward_inward_2 == 0
                 else refusal_outward_outward_inward_2
             ),
             (
                 (axis_a1_inward, axis_a2_outward, axis_a3_inward)
-                if refusal_inward_outward_inward_2 == 0.0
+                if refusal_inward_outward_inward_2 == 0
                 else refusal_inward_outward_inward_2
             ),
             (
                 (axis_a1_outward, axis_a2_inward, axis_a3_inward)
-                if refusal_outward_inward_inward_2 == 0.0
+                if refusal_outward_inward_inward_2 == 0
                 else refusal_outward_inward_inward_2
             ),
             (
                 (axis_a1_inward, axis_a2_inward, axis_a3_inward)
-                if refusal_inward_inward_inward_2 == 0.0
+                if refusal_inward_inward_inward_2 == 0
                 else refusal_inward_inward_inward_2
             ),
         )
@@ -525,7 +525,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_outward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
@@ -549,7 +549,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         cos_a2 = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
         pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
@@ -571,7 +571,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3 = (
             rod_2_x_inward*rod_3_z_inward*y - rod_2_z_inward*rod_3_x_inward*y
@@ -585,7 +585,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
         pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
@@ -601,7 +601,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         type2_rods_coplanar = (
             (
@@ -612,7 +612,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_z*rod_2_x_inward*rod_3_y_outward
@@ -622,7 +622,7 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_z*rod_2_x_inward*rod_3_y_inward
@@ -632,19 +632,19 @@ def unrolled(k: Constants) -> Unrolled:
             *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         return (
-            ((axis_a1_outward, axis_a2_outward, axis_a3_outward) if refusal_outward_outward_outward == 0.0 else None),
-            ((axis_a1_inward, axis_a2_outward, axis_a3_outward) if refusal_inward_outward_outward == 0.0 else None),
-            ((axis_a1_outward, axis_a2_inward, axis_a3_outward) if refusal_outward_inward_outward == 0.0 else None),
-            ((axis_a1_inward, axis_a2_inward, axis_a3_outward) if refusal_inward_inward_outward == 0.0 else None),
-            ((axis_a1_outward, axis_a2_outward, axis_a3_inward) if refusal_outward_outward_inward == 0.0 else None),
-            ((axis_a1_inward, axis_a2_outward, axis_a3_inward) if refusal_inward_outward_inward == 0.0 else None),
-            ((axis_a1_outward, axis_a2_inward, axis_a3_inward) if refusal_outward_inward_inward == 0.0 else None),
-            ((axis_a1_inward, axis_a2_inward, axis_a3_inward) if refusal_inward_inward_inward == 0.0 else None),
+            ((axis_a1_outward, axis_a2_outward, axis_a3_outward) if refusal_outward_outward_outward == 0 else None),
+            ((axis_a1_inward, axis_a2_outward, axis_a3_outward) if refusal_inward_outward_outward == 0 else None),
+            ((axis_a1_outward, axis_a2_inward, axis_a3_outward) if refusal_outward_inward_outward == 0 else None),
+            ((axis_a1_inward, axis_a2_inward, axis_a3_outward) if refusal_inward_inward_outward == 0 else None),
+            ((axis_a1_outward, axis_a2_outward, axis_a3_inward) if refusal_outward_outward_inward == 0 else None),
+            ((axis_a1_inward, axis_a2_outward, axis_a3_inward) if refusal_inward_outward_inward == 0 else None),
+            ((axis_a1_outward, axis_a2_inward, axis_a3_inward) if refusal_outward_inward_inward == 0 else None),
+            ((axis_a1_inward, axis_a2_inward, axis_a3_inward) if refusal_inward_inward_inward == 0 else None),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs

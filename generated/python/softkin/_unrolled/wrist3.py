@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import PlainFrame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Signs, Vector
     from softkin.wrist3 import Constants
 
 
@@ -33,13 +33,13 @@ def unrolled(k: Constants) -> Unrolled:
     offset_b_times_2 = 2.0*offset_b
     no_offsets = not any((offset_a, offset_b, offset_c,))
 
-    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+    def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
         ref_a, ref_b, ref_c = reference
         # numbers of reasonable size
         if not (-1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9 and -1e9 <= ref_c <= 1e9):
-            return 2*(2.0,)
+            return 2*(2,)
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
         # c: polar angle in the r31 and r32 equations; its reference where it is free
         if radius_c > 1e-11:
@@ -53,25 +53,25 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_c_up = direction_y_c_down
         scaled_r22_before_c = direction_x_c_down*r22 + direction_y_c_down*r21
         direction_y_a = -direction_x_c_down*r12 - direction_y_c_down*r11
-        open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
+        open_a = mid_a if single_a else ref_a  # A: where its turn is open
         axis_a_down = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0)/DEGREE  # A: its turn
         if not -180.000000001 <= axis_a_down - open_a < 179.999999999:
             axis_a_down = nearest_period(axis_a_down, open_a)
-        open_b = mid_b if single_b > 0.0 else ref_b  # B: where its turn is open
+        open_b = mid_b if single_b else ref_b  # B: where its turn is open
         axis_b_down = offset_b + arctan2(radius_c, r33 + 0.0)/DEGREE  # B: its turn
         if not -180.000000001 <= axis_b_down - open_b < 179.999999999:
             axis_b_down = nearest_period(axis_b_down, open_b)
-        open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
+        open_c = mid_c if single_c else ref_c  # C: where its turn is open
         axis_c_down = offset_c + arctan2(direction_y_c_down, direction_x_c_down + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c_down - open_c < 179.999999999:
             axis_c_down = nearest_period(axis_c_down, open_c)
         # limits of A, limits of B, limits of C
         refusal_down = (
-            0.0
+            0
             if (axis_a_down >= lowest_a) and (axis_b_down >= lowest_b) and (axis_c_down >= lowest_c) and (
                 axis_a_down <= highest_a
             ) and (axis_b_down <= highest_b) and (axis_c_down <= highest_c)
-            else 3.0
+            else 3
         )
         if radius_c > 1e-11:
             direction_of_axis_a = 180.0 + axis_a_down
@@ -95,15 +95,15 @@ def unrolled(k: Constants) -> Unrolled:
             axis_c_up = nearest_period(axis_c_up, open_c)
         # limits of A, limits of B, limits of C
         refusal_up = (
-            0.0
+            0
             if (axis_a_up >= lowest_a) and (axis_b_up >= lowest_b) and (axis_c_up >= lowest_c) and (
                 axis_a_up <= highest_a
             ) and (axis_b_up <= highest_b) and (axis_c_up <= highest_c)
-            else 3.0
+            else 3
         )
         return (
-            ((axis_a_down, axis_b_down, axis_c_down) if refusal_down == 0.0 else refusal_down),
-            ((axis_a_up, axis_b_up, axis_c_up) if refusal_up == 0.0 else refusal_up),
+            ((axis_a_down, axis_b_down, axis_c_down) if refusal_down == 0 else refusal_down),
+            ((axis_a_up, axis_b_up, axis_c_up) if refusal_up == 0 else refusal_up),
         )
 
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -145,7 +145,7 @@ def unrolled(k: Constants) -> Unrolled:
             (direction_of_axis_a, offset_b_times_2 - axis_b, direction_of_axis_c),
         )
 
-    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), (r31, r32, r33)) = frame
         (sigma_hand,) = signs
@@ -153,8 +153,8 @@ def unrolled(k: Constants) -> Unrolled:
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
         # c: polar angle in the r31 and r32 equations; its reference where it is free
         if radius_c > 1e-11:
-            direction_x_c = r31*sigma_hand
-            direction_y_c = -r32*sigma_hand
+            direction_x_c = sigma_hand*r31
+            direction_y_c = -sigma_hand*r32
         else:
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
@@ -163,9 +163,9 @@ def unrolled(k: Constants) -> Unrolled:
             offset_a + arctan2(-direction_x_c*r12 - direction_y_c*r11, direction_x_c*r22 + direction_y_c*r21)*RADIAN
         )
         if no_offsets:
-            return (axis_a, arctan2(radius_c*sigma_hand, r33)*RADIAN, arctan2(direction_y_c, direction_x_c)*RADIAN)
+            return (axis_a, arctan2(sigma_hand*radius_c, r33)*RADIAN, arctan2(direction_y_c, direction_x_c)*RADIAN)
         return (
-            axis_a, offset_b + arctan2(radius_c*sigma_hand, r33)*RADIAN,
+            axis_a, offset_b + arctan2(sigma_hand*radius_c, r33)*RADIAN,
             offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN,
         )
 
