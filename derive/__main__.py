@@ -83,11 +83,13 @@ def _files(options: argparse.Namespace) -> dict[str, bytes]:
             cache.write(key, one.as_plain())
         built.append(one)
     progress.end()
+    is_unchanged = cache is not None and foundation(options.profile) == before
+    files = files_of(built, outputs, cache, work.keys if is_unchanged else ())
     if cache:
         cache.tidy()
         for path in cache.damaged:
             print(f"note: {path} is damaged, and was not used", file=sys.stderr)
-    return files_of(built, outputs)
+    return files
 
 
 def _line(one: Built) -> str:

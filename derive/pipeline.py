@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 import traceback
 from base64 import b64decode, b64encode
@@ -12,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from derive.cache import Cache, entry_key
+from derive.cache import Cache, entry_key, key_of
 from derive.description.catalogue import Entry
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.emit.language import Language, Part
@@ -85,7 +86,8 @@ def derive_all(work: Work, profile: str | None) -> Iterator[Built]:
     if not work.missing:
         yield from (kept for kept in work.kept if kept is not None)
         return
-    with ProcessPoolExecutor(max_workers=min(PROCESSES, len(work.missing))) as pool:
+    # What is derived lives as long as its process: looking for garbage among it finds nothing, and takes a tenth of the time.
+    with ProcessPoolExecutor(max_workers=min(PROCESSES, len(work.missing)), initializer=gc.disable) as pool:
         derived = pool.map(partial(_attempt, profile), work.missing)
         for (path, _), kept in zip(work.entries, work.kept, strict=True):
             result = next(derived) if kept is None else kept
@@ -123,14 +125,26 @@ def languages(profile: str | None = None) -> tuple[Language, ...]:
         raise GenerationError(str(problem)) from None
 
 
-def files_of(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, bytes]:
-    """All generated files: path below the output folder → bytes."""
-    texts = {
-        str(Path(language.name) / name): text.encode()
+def files_of(
+    built: Sequence[Built], outputs: Sequence[Language], cache: Cache | None = None, keys: Sequence[str | None] = ()
+) -> dict[str, bytes]:
+    """All generated files: path below the output folder → bytes. The texts of a run with the same keys are kept as a whole."""
+    known = [key for key in keys if key]
+    whole = key_of("texts", *known) if cache and len(known) == len(built) else None
+    texts: dict[str, str] | None = cache.read(whole) if cache and whole else None
+    if texts is None:
+        texts = _texts(built, outputs)
+        if cache and whole:
+            cache.write(whole, texts)
+    return {name: text.encode() for name, text in texts.items()} | {n: data for one in built for n, data in one.pictures.items()}
+
+
+def _texts(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, str]:
+    return {
+        str(Path(language.name) / name): text
         for language in outputs
         for name, text in sorted(language.files([one.parts[language.name] for one in built]).items())
     }
-    return texts | {name: data for one in built for name, data in one.pictures.items()}
 
 
 def _derived(kinematics: Kinematics) -> str:

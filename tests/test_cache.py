@@ -94,12 +94,25 @@ def test_a_damaged_entry_is_noticed(tmp_path: Path, damage: Callable[[Path], Non
 def test_a_damaged_entry_is_derived_anew_and_said(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / FILES[1]).unlink()
     first, derived, _ = generated(folder, capsys)
-    (entry,) = Path(f"{folder.parent / 'generated'}.cache").iterdir()
-    damage_a_byte(entry)
+    entries = list(Path(f"{folder.parent / 'generated'}.cache").iterdir())
+    assert len(entries) == 2, "the mechanism, and the texts of all"
+    for entry in entries:
+        damage_a_byte(entry)
     found, again, notes = generated(folder, capsys)
     assert (found, again) == (first, derived)
-    assert "is damaged, and was not used" in notes
+    assert notes.count("is damaged, and was not used") == 2
     assert generated(folder, capsys) == (first, [], "")
+
+
+def test_sources_that_change_during_a_run_leave_nothing_behind(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was derived then belongs to neither state."""
+    states = iter(["before", *["after"] * 10])
+    monkeypatch.setattr(command_line, "foundation", lambda _: next(states))
+    _, derived, _ = generated(folder, capsys)
+    assert len(derived) == len(FILES)
+    assert not Path(f"{folder.parent / 'generated'}.cache").exists()
 
 
 def test_check_and_fresh_never_look(folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

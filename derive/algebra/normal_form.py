@@ -88,14 +88,20 @@ def reduce_units(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequen
 
 def linear_coefficients(expression: sp.Expr, atoms: Sequence[sp.Symbol]) -> tuple[list[sp.Expr], sp.Expr] | None:
     """Coefficients of the atoms and the rest, where the expression is linear in them jointly; else None."""
+    found = _linear(expression, tuple(atoms))
+    return None if found is None else (list(found[:-1]), found[-1])
+
+
+@cache
+def _linear(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Expr, ...] | None:
+    """The coefficients, then the rest. Every rule asks again for the equations that are left."""
     try:
         poly = sp.Poly(expression, *atoms)
     except sp.PolynomialError:
         return None
     if poly.total_degree() > 1:
         return None
-    coefficients = [sp.sympify(poly.coeff_monomial(atom)) for atom in atoms]
-    return coefficients, sp.sympify(poly.coeff_monomial(1))
+    return tuple(sp.sympify(poly.coeff_monomial(monomial)) for monomial in (*atoms, 1))
 
 
 def split_known(expression: sp.Expr, unknown: Iterable[sp.Symbol]) -> tuple[sp.Expr, sp.Expr]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from functools import cache
 
 import sympy as sp
 from sympy.core.relational import Relational
@@ -119,7 +120,7 @@ class ExpressionPrinter(ABC):
         return (f"-{text}", _UNARY) if value < 0 else (text, ATOM)
 
     def _sum(self, node: sp.Add) -> str:
-        terms = sorted(node.as_ordered_terms(), key=_term_order)  # stable: among equals as SymPy orders them
+        terms = _terms(node)
         text = self._text(terms[0], _SUM)
         for term in terms[1:]:
             if _is_negative(term):
@@ -175,6 +176,13 @@ def _is_whole(node: sp.Basic) -> bool:
     return bool(node.free_symbols) and all(map(is_count, node.free_symbols)) and not node.has(ToReal)
 
 
+@cache
+def _terms(node: sp.Add) -> tuple[sp.Expr, ...]:
+    """The terms of a sum as they are written; among equals as SymPy orders them."""
+    return tuple(sorted(node.as_ordered_terms(), key=_term_order))
+
+
+@cache
 def _is_negative(term: sp.Expr) -> bool:
     return bool(term.could_extract_minus_sign()) if not term.is_Add else False
 
@@ -184,13 +192,15 @@ def _term_order(term: sp.Expr) -> tuple[bool, int]:
     return _is_negative(term), sum(len(side) for side in _fraction(term.as_coeff_Mul()[1]))
 
 
+@cache
 def _factor_order(factor: sp.Expr) -> tuple[bool, str]:
     """Sines and cosines last, as one writes them by hand."""
     name = str(factor)
     return name.startswith(("sin_", "cos_", "Sin", "Cos")), name
 
 
-def _fraction(node: sp.Expr) -> tuple[list[sp.Expr], list[sp.Expr]]:
+@cache
+def _fraction(node: sp.Expr) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
     """The factors above and below the line, integer powers written out."""
     above: list[sp.Expr] = []
     below: list[sp.Expr] = []
@@ -201,4 +211,4 @@ def _fraction(node: sp.Expr) -> tuple[list[sp.Expr], list[sp.Expr]]:
             side.extend([base] * abs(int(exponent)))
         elif factor != 1:
             above.append(factor)
-    return above, below
+    return tuple(above), tuple(below)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import sympy as sp
 
@@ -54,6 +55,11 @@ def _merged(turns: list[Factor], factor: Factor) -> list[Factor]:
 
 
 def _rotation(turns: list[Factor]) -> sp.Matrix:
+    return _product(tuple(turns)).copy()
+
+
+@cache
+def _product(turns: tuple[Factor, ...]) -> sp.Matrix:
     product = sp.eye(3)
     for turn in turns:
         product = product * turn.matrix()[:3, :3]

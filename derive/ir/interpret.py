@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from functools import reduce
+from functools import cache, reduce
+from operator import itemgetter
 
 import numpy as np
 import sympy as sp
@@ -84,14 +85,26 @@ _FUNCTIONS: dict[type[sp.Basic], Callable[..., Array]] = {
 
 def evaluate(expression: sp.Basic, values: Mapping[str, Array]) -> Array:
     """The value of an expression for arrays of its symbols."""
-    if isinstance(expression, sp.Symbol):
-        return np.asarray(np.pi / 180.0) if expression == DEGREE else values[expression.name]
+    return _evaluator(expression)(values)
+
+
+@cache
+def _evaluator(expression: sp.Basic) -> Callable[[Mapping[str, Array]], Array]:
+    """The expression as a function of the values of its symbols: expressions are evaluated thousands of times."""
+    if isinstance(expression, sp.Symbol) and expression != DEGREE:
+        return itemgetter(expression.name)
     if expression in (sp.true, sp.false):
-        return np.asarray(expression == sp.true)
-    if isinstance(expression, sp.Number | sp.NumberSymbol):
-        return np.asarray(float(expression))
-    arguments = [evaluate(a, values) for a in expression.args]
-    return _FUNCTIONS[type(expression)](*arguments)
+        return _constant(expression == sp.true)
+    if expression == DEGREE or isinstance(expression, sp.Number | sp.NumberSymbol):
+        return _constant(np.pi / 180.0 if expression == DEGREE else float(expression))
+    function, arguments = _FUNCTIONS[type(expression)], [_evaluator(a) for a in expression.args]
+    return lambda values: function(*[argument(values) for argument in arguments])
+
+
+def _constant(value: float | bool) -> Callable[[Mapping[str, Array]], Array]:
+    array = np.asarray(value)
+    array.setflags(write=False)
+    return lambda _: array
 
 
 def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array], NDArray[np.object_]]:

@@ -6,8 +6,9 @@ a choice count, all passes of an iteration, and what `Initialize` computed once 
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterable, Iterator
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
 import sympy as sp
 
@@ -50,10 +51,15 @@ class Cost:
     """Sines, cosines and arc tangents."""
 
     def __add__(self, other: Cost) -> Cost:
-        return Cost(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
+        return Cost(*map(operator.add, self.counts, other.counts))
 
     def __mul__(self, times: int) -> Cost:
-        return Cost(*(times * a for a in astuple(self)))
+        return Cost(*(times * a for a in self.counts))
+
+    @property
+    def counts(self) -> tuple[int, int, int, int, int]:
+        """The numbers in their order."""
+        return self.additions, self.multiplications, self.divisions, self.roots, self.trigonometric
 
 
 @dataclass(frozen=True)
@@ -121,7 +127,7 @@ def _amounts(require: Require) -> tuple[sp.Expr, ...]:
 
 
 def _most(*costs: Cost) -> Cost:
-    return Cost(*map(max, zip(*map(astuple, costs), strict=True)))
+    return Cost(*map(max, zip(*(cost.counts for cost in costs), strict=True)))
 
 
 def cost_of(program: Program) -> Cost:

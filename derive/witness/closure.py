@@ -51,10 +51,19 @@ class Rows:
     def __call__(self, *columns: Array) -> Array:
         count = len(columns[0])
         if count not in self._mapped:
-            self._mapped[count] = self._function.map(count)
-        result = self._mapped[count](*(ca.DM(c.T) for c in columns)).full()
+            self._mapped[count] = self._function.map(count).buffer()
         rows, width = self._shape
-        return np.moveaxis(result.reshape(rows, count, width), 1, 0)
+        result = np.empty((count * width, rows))
+        # CasADi stores by columns, a sample each: the memory of an array with a sample in every row.
+        buffer, run = self._mapped[count]
+        given = [np.ascontiguousarray(c, dtype=float) for c in columns]
+        for place, rows_of_samples in enumerate(given):
+            if rows_of_samples.size:
+                buffer.set_arg(place, rows_of_samples.data)
+        if result.size:
+            buffer.set_res(0, result.data)
+            run()
+        return np.moveaxis(np.ascontiguousarray(result.T).reshape(rows, count, width), 1, 0)
 
 
 @dataclass(frozen=True)

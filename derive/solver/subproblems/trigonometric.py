@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 import sympy as sp
 
@@ -170,6 +171,7 @@ def _with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
     return value
 
 
+@cache
 def _factored(value: sp.Expr) -> sp.Expr:
     """In factors, over the roots of numbers that occur."""
     roots = [r for r in value.atoms(sp.Pow) if r.is_number and not r.is_rational]
