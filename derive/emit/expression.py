@@ -23,6 +23,7 @@ from derive.ir.primitives import (
     Root,
     Select,
     ToReal,
+    Wrap,
 )
 from derive.ir.symbols import is_condition, is_count
 
@@ -100,6 +101,9 @@ class ExpressionPrinter(ABC):
             return f"{sides._text(node.lhs, _SUM)} {self.comparison(node.rel_op)} {sides._text(node.rhs, _SUM)}", COMPARE
         if isinstance(node, sp.Not):
             return f"{self.logic('not')} {self._text(node.args[0], ATOM)}", COMPARE
+        if isinstance(node, Wrap):
+            (angle,) = node.args
+            return self._spell(angle if isinstance(angle, Atan2) else Atan2(sp.sin(angle), sp.cos(angle)))
         if isinstance(node, ToReal):
             return self.factor(node.args[0]), ATOM
         if isinstance(node, sp.And):

@@ -17,6 +17,7 @@ from derive.ir.primitives import (
     NearestPeriod,
     Select,
     ToReal,
+    Wrap,
 )
 from derive.ir.program import (
     Let,
@@ -80,13 +81,13 @@ def axis_lets(joint: Joint) -> tuple[Let, ...]:
     motor = Let(joint.motor, (joint.axis - joint.offset) * joint.unit)
     if not joint.is_angle:
         return (Let(joint.axis, joint.symbol + shift), motor)
-    direction = Atan2(sine(joint.symbol), cosine(joint.symbol)) / DEGREE + shift
+    direction = Atan2(sine(joint.symbol), cosine(joint.symbol))
     if not joint.multi_turn:
-        return (Let(joint.axis, direction), motor)
+        return (Let(joint.axis, Wrap(direction) / DEGREE + shift), motor)
     near = real(f"near_{joint.key}")
     return (
         *_near(joint, near),
-        Let(joint.axis, NearestPeriod(direction, near), turn_of=joint.name),
+        Let(joint.axis, NearestPeriod(direction / DEGREE + shift, near), turn_of=joint.name),
         motor,
     )
 

@@ -23,6 +23,7 @@ from derive.ir.primitives import (
     Root,
     Select,
     ToReal,
+    Wrap,
 )
 from derive.ir.program import (
     Call,
@@ -39,9 +40,9 @@ from derive.ir.roots import At, nearest
 from derive.ir.symbols import (
     PLACE,
     Flag,
+    is_condition,
     is_count,
 )
-from derive.ir.types import Type, type_of
 
 Array = NDArray[np.float64]
 _SHIFT = 180.0 + float(EDGE)
@@ -50,6 +51,11 @@ _SHIFT = 180.0 + float(EDGE)
 def nearest_period(value: Array, centre: Array) -> Array:
     """value + 360 k in [centre - 180 - EDGE, centre + 180 - EDGE)."""
     return value - 360.0 * np.floor((value - centre + _SHIFT) / 360.0)
+
+
+def wrap(angle: Array) -> Array:
+    """The value of an angle in (-pi, pi]."""
+    return np.asarray(angle - 2 * np.pi * np.ceil((angle - np.pi) / (2 * np.pi)))
 
 
 def nearest_on_arc(angle: Array, centre: Array, half: Array) -> Array:
@@ -66,6 +72,7 @@ _FUNCTIONS: dict[type[sp.Basic], Callable[..., Array]] = {
     Atan2: lambda y, x: np.arctan2(y + 0.0, x + 0.0),  # a zero has no sign
     Select: np.where,
     ToReal: lambda n: np.asarray(n, dtype=float),
+    Wrap: wrap,
     NearestPeriod: nearest_period,
     NearestOnArc: nearest_on_arc,
     sp.Le: np.less_equal,
@@ -164,7 +171,7 @@ def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]
 
     def at(program: Program, place: At) -> list[Array]:
         if not len(place.rows):
-            return [np.zeros(0, dtype=bool if type_of(o.value) is Type.BOOL else float) for o in program.outputs]
+            return [np.zeros(0, dtype=bool if is_condition(o.value) else float) for o in program.outputs]
         there = {s.name: rows[s.name][place.rows] for s in program.inputs if s not in PLACE}
         outputs, _ = run(program, there | {s.name: v for s, v in zip(PLACE, place[1:], strict=True)})
         return [np.broadcast_to(outputs[o.name], place.joint.shape) for o in program.outputs]

@@ -45,6 +45,13 @@ class ToReal(sp.Function):
         return number if number.is_Integer else None
 
 
+class Wrap(sp.Function):
+    """wrap(angle): the value of an angle in (-pi, pi], a real number."""
+
+    nargs = 1
+    is_real = True
+
+
 class NearestPeriod(sp.Function):
     """nearest_period(value, centre): value + 360 k in [centre - 180, centre + 180), in degrees.
 
@@ -79,6 +86,7 @@ PRIMITIVES: tuple[type[sp.Function], ...] = (
     Atan2,
     Select,
     ToReal,
+    Wrap,
     NearestPeriod,
     NearestOnArc,
 )

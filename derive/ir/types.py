@@ -3,18 +3,23 @@
     Real     a number
     Bool     a condition, and a name that is one: `flag`
     Int      a whole number: `count`. It is compared with, added to and multiplied with whole numbers; `ToReal` makes it a Real
+    Angle    a Real modulo a turn, in radians. It comes from `Atan2` and `NearestOnArc`, and is added to, taken several times,
+             chosen, and asked for its sine and cosine. `Wrap` makes it a Real: what reads it otherwise is refused
+    Heading  an Angle in degrees, as axes are: `NearestPeriod` makes it a Real
 
-A whole number that is written down is an Int or a Real, as its neighbours are.
+A whole number that is written down is an Int or a Real, as its neighbours are. A flag and a count are so by their names; a name
+is an angle because of what is bound to it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from enum import Enum
 
 import sympy as sp
 from sympy.core.relational import Relational
 
+from derive.ir.constants import DEGREE
 from derive.ir.primitives import (
     Atan2,
     NearestOnArc,
@@ -22,7 +27,9 @@ from derive.ir.primitives import (
     Root,
     Select,
     ToReal,
+    Wrap,
 )
+from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Statement
 from derive.ir.symbols import Flag, is_count
 
 
@@ -34,19 +41,25 @@ class Type(Enum):
     INT = "int"
     WRITTEN = "a whole number that is written down"
     """An Int or a Real."""
+    ANGLE = "angle"
+    HEADING = "angle in degrees"
 
 
 class IllTypedError(Exception):
     """An expression that mixes types; the message says which part."""
 
 
+Known = Mapping[sp.Symbol, Type]
+"""The names that are angles."""
 _NUMBERS = (Type.REAL, Type.INT)
+_TURNING = (Type.ANGLE, Type.HEADING)
+_NOTHING: Known = {}
 
 
-def type_of(value: sp.Basic) -> Type:
+def type_of(value: sp.Basic, known: Known = _NOTHING) -> Type:
     """The type of an expression, through all of its parts; raises `IllTypedError`."""
     if isinstance(value, sp.Symbol):
-        return Type.BOOL if isinstance(value, Flag) else Type.INT if is_count(value) else Type.REAL
+        return Type.BOOL if isinstance(value, Flag) else Type.INT if is_count(value) else known.get(value, Type.REAL)
     if isinstance(value, sp.Number | sp.NumberSymbol):
         return Type.WRITTEN if value.is_Integer else Type.REAL
     if value in (sp.true, sp.false):
@@ -54,84 +67,153 @@ def type_of(value: sp.Basic) -> Type:
     rule = next((rule for kind, rule in _RULES.items() if isinstance(value, kind)), None)
     if rule is None:
         raise IllTypedError(f"{type(value).__name__} is not a primitive")
-    return rule(value)
-
-
-def type_of_name(name: sp.Symbol) -> Type:
-    """The type that a name is declared with."""
-    return type_of(name)
+    return rule(value, [type_of(part, known) for part in value.args])
 
 
 def fits(found: Type, wanted: Type) -> bool:
-    """Whether a value of one type may be bound to a name of the other."""
+    """Whether a value of one type may be bound to a name of the other: any number is an angle, too."""
+    if wanted in _TURNING:
+        return found in (wanted, Type.REAL, Type.WRITTEN)
     return found is wanted or (found is Type.WRITTEN and wanted in _NUMBERS)
 
 
-def _same(value: sp.Basic, parts: Iterable[sp.Basic], among: tuple[Type, ...]) -> Type:
+def angles_in(body: Iterable[Statement]) -> dict[sp.Symbol, Type]:
+    """The names that are bound to angles; raises `IllTypedError`."""
+    known: dict[sp.Symbol, Type] = {}
+    for statement in body:
+        known |= angles_of(statement, known)
+    return known
+
+
+def angles_of(statement: Statement, known: Known) -> dict[sp.Symbol, Type]:
+    """The names that a statement binds to angles, where some are known."""
+    found: dict[sp.Symbol, Type] = {}
+    if isinstance(statement, Let):
+        found = {statement.name: type_of(statement.value, known)}
+    elif isinstance(statement, Iterate):
+        found = {name: type_of(value, known) for name, value in zip(statement.state, statement.start, strict=True)}
+        for inner in statement.step:
+            found |= angles_of(inner, {**known, **found})
+    elif isinstance(statement, Call):
+        types = output_types(statement.program)
+        found = {name: types[name.name] for name in statement.names}
+    elif isinstance(statement, FindRoot):
+        found = dict(zip(statement.names, output_types(statement.finish).values(), strict=True))
+    return {name: kind for name, kind in found.items() if kind in _TURNING}
+
+
+def output_types(program: Program) -> dict[str, Type]:
+    """The types of what a program answers."""
+    known = angles_in(program.body)
+    return {output.name: type_of(output.value, known) for output in program.outputs}
+
+
+def _same(value: sp.Basic, found: Sequence[Type], *among: Type) -> Type:
     """The one type of some parts, which must be among these."""
-    found = {type_of(part) for part in parts}
-    named = found - {Type.WRITTEN}
+    named = {*found} - {Type.WRITTEN}
     if len(named) > 1 or not named <= {*among}:
-        raise IllTypedError(f"{value} mixes types: {', '.join(sorted(t.value for t in found))}")
+        raise IllTypedError(f"{value} mixes types: {', '.join(sorted(t.value for t in {*found}))}")
     return named.pop() if named else Type.WRITTEN
 
 
-def _reals(value: sp.Basic) -> Type:
-    _same(value, value.args, (Type.REAL,))
+def _turning(value: sp.Basic, found: Sequence[Type]) -> Type | None:
+    """The angle that some parts are of, where one is: what else there is must be a number."""
+    kinds = [kind for kind in _TURNING if kind in found]
+    return _same(value, [t for t in found if t is not Type.REAL], *kinds) if kinds else None
+
+
+def _reals(value: sp.Basic, found: Sequence[Type]) -> Type:
+    _same(value, found, Type.REAL)
     return Type.REAL
 
 
-def _numbers(value: sp.Basic) -> Type:
-    return _same(value, value.args, _NUMBERS)
+def _numbers(value: sp.Basic, found: Sequence[Type]) -> Type:
+    return _same(value, found, *_NUMBERS)
 
 
-def _power(value: sp.Basic) -> Type:
+def _sum(value: sp.Basic, found: Sequence[Type]) -> Type:
+    return _turning(value, found) or _numbers(value, found)
+
+
+def _product(value: sp.Basic, found: Sequence[Type]) -> Type:
+    """An angle several times, and in degrees."""
+    factors = [(f, kind) for f, kind in zip(value.args, found, strict=True) if kind is not Type.WRITTEN]
+    if len(factors) == 2 and factors[0][0] == 1 / DEGREE and factors[1][1] is Type.ANGLE:
+        return Type.HEADING
+    if len(factors) == 2 and factors[1][0] == 1 / DEGREE and factors[0][1] is Type.ANGLE:
+        return Type.HEADING
+    return factors[0][1] if len(factors) == 1 and factors[0][1] in _TURNING else _numbers(value, found)
+
+
+def _power(value: sp.Basic, found: Sequence[Type]) -> Type:
     """A whole number has no reciprocal."""
-    base, exponent = value.args
-    found = _same(value, (base,), _NUMBERS)
-    return found if exponent.is_positive and found is not Type.WRITTEN else _same(value, (base,), (Type.REAL,))
+    kind = _same(value, found[:1], *_NUMBERS)
+    return kind if value.args[1].is_positive else _same(value, found[:1], Type.REAL)
 
 
-def _comparison(value: sp.Basic) -> Type:
+def _comparison(value: sp.Basic, found: Sequence[Type]) -> Type:
     """Only whole numbers are equal: of two reals this would depend on rounding."""
-    among = (Type.INT,) if isinstance(value, sp.Eq | sp.Ne) else _NUMBERS
-    _same(value, value.args, among)
+    _same(value, found, *((Type.INT,) if isinstance(value, sp.Eq | sp.Ne) else _NUMBERS))
     return Type.BOOL
 
 
-def _logic(value: sp.Basic) -> Type:
-    return _same(value, value.args, (Type.BOOL,))
+def _logic(value: sp.Basic, found: Sequence[Type]) -> Type:
+    return _same(value, found, Type.BOOL)
 
 
-def _opposite(value: sp.Basic) -> Type:
+def _opposite(value: sp.Basic, found: Sequence[Type]) -> Type:
     """Of a name alone: the opposite of a comparison would hold for not-a-number."""
     if not isinstance(value.args[0], Flag):
         raise IllTypedError(f"{value} is not the opposite of a flag")
     return Type.BOOL
 
 
-def _choice(value: sp.Basic) -> Type:
-    condition, first, second = value.args
-    _same(value, (condition,), (Type.BOOL,))
-    return _same(value, (first, second), _NUMBERS)
+def _choice(value: sp.Basic, found: Sequence[Type]) -> Type:
+    _same(value, found[:1], Type.BOOL)
+    return _turning(value, found[1:]) or _numbers(value, found[1:])
 
 
-def _converted(value: sp.Basic) -> Type:
-    _same(value, value.args, (Type.INT,))
+def _converted(value: sp.Basic, found: Sequence[Type]) -> Type:
+    _same(value, found, Type.INT)
     return Type.REAL
 
 
-_RULES: dict[type[sp.Basic], Callable[[sp.Basic], Type]] = {
-    sp.Add: _numbers,
-    sp.Mul: _numbers,
+def _of_angle(value: sp.Basic, found: Sequence[Type]) -> Type:
+    if found[0] is not Type.ANGLE:
+        _same(value, found, Type.REAL)
+    return Type.REAL
+
+
+def _direction(value: sp.Basic, found: Sequence[Type]) -> Type:
+    _same(value, found, Type.REAL)
+    return Type.ANGLE
+
+
+def _on_arc(value: sp.Basic, found: Sequence[Type]) -> Type:
+    """Of angle and centre no turn counts; half the arc is a size."""
+    _turning(value, found[:2])
+    _same(value, found[2:], Type.REAL)
+    return Type.ANGLE
+
+
+def _period(value: sp.Basic, found: Sequence[Type]) -> Type:
+    if found[0] is not Type.HEADING:
+        _same(value, found[:1], Type.REAL)
+    return _same(value, found[1:], Type.REAL) and Type.REAL
+
+
+_RULES: dict[type[sp.Basic], Callable[[sp.Basic, Sequence[Type]], Type]] = {
+    sp.Add: _sum,
+    sp.Mul: _product,
     sp.Pow: _power,
     sp.Abs: _numbers,
-    sp.sin: _reals,
-    sp.cos: _reals,
+    sp.sin: _of_angle,
+    sp.cos: _of_angle,
     Root: _reals,
-    Atan2: _reals,
-    NearestPeriod: _reals,
-    NearestOnArc: _reals,
+    Atan2: _direction,
+    Wrap: _of_angle,
+    NearestPeriod: _period,
+    NearestOnArc: _on_arc,
     Select: _choice,
     ToReal: _converted,
     Relational: _comparison,

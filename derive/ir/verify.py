@@ -14,11 +14,8 @@ from derive.ir.primitives import (
 )
 from derive.ir.program import (
     Call,
-    FindRoot,
     Iterate,
-    Let,
     Program,
-    Require,
     Solve,
     Statement,
     binds,
@@ -28,7 +25,8 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     symbols_of,
 )
-from derive.ir.types import IllTypedError, Type, fits, type_of
+from derive.ir.typed import check_types
+from derive.ir.types import IllTypedError
 
 _PORTABLE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _ARITHMETIC = (sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Rational, sp.Float, sp.Integer)
@@ -49,7 +47,10 @@ def verify(program: Program) -> Program:
         _check_statement(program, statement, bound)
     for output in program.outputs:
         _check_expression(program, output.value, bound)
-        _type(program, output.value)
+    try:
+        check_types(program)
+    except IllTypedError as problem:
+        raise BrokenProgram(f"{program.name}: {problem}") from None
     return program
 
 
@@ -67,7 +68,6 @@ def _check_statement(program: Program, statement: Statement, bound: dict[str, sp
     for value in (*expressions(statement), *told(statement)):
         _check_expression(program, value, bound)
     bound |= {name.name: name for name in binds(statement)}
-    _check_types(program, statement)
 
 
 def _check_call(program: Program, call: Call) -> None:
@@ -91,7 +91,6 @@ def _check_loop(program: Program, loop: Iterate, bound: dict[str, sp.Symbol]) ->
         _check_statement(program, inner, bound)
     for value in (loop.done, *loop.following):
         _check_expression(program, value, bound)
-    _check_types(program, loop)
     for own, value in zip(loop.state, loop.following, strict=True):
         if others := sorted(s.name for s in symbols_of(value) if s in loop.state and s != own):
             raise BrokenProgram(f"{program.name}: what follows {own} reads {others[0]!r}, which may have been assigned before")
@@ -116,53 +115,6 @@ def _check_expression(program: Program, value: sp.Basic, bound: dict[str, sp.Sym
             raise BrokenProgram(f"{program.name}: power {node} is not an integer power")
         if not isinstance(node, _ARITHMETIC + _LOGIC + PRIMITIVES) and node not in (sp.true, sp.false):
             raise BrokenProgram(f"{program.name}: {type(node).__name__} is not a primitive, in {value}")
-
-
-def _check_types(program: Program, statement: Statement) -> None:
-    """Every value has the type of its name, and what is asked is a condition."""
-    if isinstance(statement, Let):
-        _fit(program, statement.name, statement.value)
-    elif isinstance(statement, Require):
-        _is(program, statement.condition, Type.BOOL)
-    elif isinstance(statement, Solve):
-        for value in (*statement.matrix, *statement.right):
-            _is(program, value, Type.REAL)
-    elif isinstance(statement, Call):
-        outputs = {o.name: o.value for o in statement.program.outputs}
-        for name, value in (*statement.given, *((n, outputs[n.name]) for n in statement.names)):
-            _fit(program, name, value)
-    elif isinstance(statement, FindRoot):
-        _check_search(program, statement)
-    else:
-        for name, *values in zip(statement.state, statement.start, statement.following, strict=True):
-            for value in values:
-                _fit(program, name, value)
-        _is(program, statement.done, Type.BOOL)
-
-
-def _check_search(program: Program, search: FindRoot) -> None:
-    """Where to start is a number, whether to look a condition, and so is the first that a root is asked and has."""
-    _is(program, search.start, Type.REAL)
-    _is(program, search.wanted, Type.BOOL)
-    for name, output in zip(search.names, search.finish.outputs, strict=True):
-        _fit(program, name, output.value)
-    _is(program, search.finish.outputs[0].value, Type.BOOL)
-
-
-def _fit(program: Program, name: sp.Symbol, value: sp.Basic) -> None:
-    _is(program, value, type_of(name))
-
-
-def _is(program: Program, value: sp.Basic, wanted: Type) -> None:
-    if not fits(found := _type(program, value), wanted):
-        raise BrokenProgram(f"{program.name}: {value} is {found.value}, and {wanted.value} is wanted")
-
-
-def _type(program: Program, value: sp.Basic) -> Type:
-    try:
-        return type_of(value)
-    except IllTypedError as problem:
-        raise BrokenProgram(f"{program.name}: {problem}") from None
 
 
 def _is_power_printable(node: sp.Pow) -> bool:

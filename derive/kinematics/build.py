@@ -14,6 +14,7 @@ from derive.description.mechanism import (
 )
 from derive.equations.axes import finite
 from derive.equations.chain_splits import is_spatial
+from derive.equations.choices import with_choices
 from derive.equations.closure import flange_rotation, heading_of
 from derive.equations.limits import limits_program
 from derive.equations.pose_at_axes import (
@@ -37,9 +38,10 @@ from derive.ir.symbols import (
     START_ROTATION,
     real,
 )
+from derive.ir.types import Type, output_types
+from derive.ir.verify import BrokenProgram
 from derive.kinematics.assembly import Assembled, assembled, assembly_checks, bound_checks
 from derive.kinematics.branch_assignment import Assignment, assign, margin_lets, with_branch_signs
-from derive.kinematics.choices import with_choices
 from derive.kinematics.coupling import (
     coupling_programs,
 )
@@ -189,6 +191,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
     called = {program.name for program in shared(lowered)}
     for program in (p for p in lowered if p.name not in called):  # a caller gives what those read
         _check_inputs(mechanism, program, {o.name for o in setup.outputs})
+        _check_outputs(program)
     return Kinematics(
         mechanism=mechanism,
         parameters=parameters,
@@ -228,6 +231,12 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
     strangers = [s.name for s in program.inputs if s.name not in allowed]
     if strangers:
         raise DescriptionError(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
+
+
+def _check_outputs(program: Program) -> None:
+    """What a call answers is a number: of every angle a turn has been chosen."""
+    if angles := [name for name, kind in output_types(program).items() if kind in (Type.ANGLE, Type.HEADING)]:
+        raise BrokenProgram(f"{program.name}: nothing has chosen a turn of {', '.join(angles)}")
 
 
 def _last(

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role, rotary
+from derive.equations.choices import converted, input_of
 from derive.ir.constants import (
     LARGEST,
     LIMIT,
@@ -41,7 +42,6 @@ from derive.ir.symbols import (
     real,
 )
 from derive.ir.verify import verify
-from derive.kinematics.choices import converted, input_of
 from derive.plate.plate import machine_constants, machine_statements
 
 CHECK_LIMITS = "check_limits"

@@ -13,7 +13,7 @@ that is refused disturbs no other.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import groupby, product
 
@@ -22,7 +22,6 @@ import sympy as sp
 from derive.ir.names import Names
 from derive.ir.passes import assemble, renamed
 from derive.ir.primitives import (
-    NearestPeriod,
     Root,
     Select,
 )
@@ -116,24 +115,6 @@ def specialised(program: Program, values: Mapping[sp.Symbol, sp.Expr]) -> Progra
     """The program with some inputs given: choices that this decides disappear."""
     body = [rewritten(s, lambda e: e.xreplace(dict(values))) for s in program.body]
     return assemble(program.name, body, [Output(o.name, o.value.xreplace(dict(values))) for o in program.outputs])
-
-
-def any_turn(program: Program, counted: Collection[sp.Symbol] = ()) -> Program:
-    """The program for inputs that are known to be good: no look at them, and any turn of an axis unless turns are counted."""
-
-    def plain(statement: Statement) -> Statement:
-        if isinstance(statement, Let) and isinstance(statement.value, NearestPeriod) and statement.name not in counted:
-            return replace(statement, value=statement.value.args[0], turn_of="")
-        return statement
-
-    kept = [plain(s) for s in program.body if not (isinstance(s, Require) and s.otherwise is Status.BAD_INPUT)]
-    return assemble(program.name, kept, program.outputs)
-
-
-def counted_turns(program: Program) -> frozenset[sp.Symbol]:
-    """The axes whose turns count in one branch, because another axis moves with them."""
-    turned = {let.name for let in program.lets() if isinstance(let.value, NearestPeriod)}
-    return frozenset(turned & set[sp.Symbol]().union(*map(reads, program.body)))
 
 
 @dataclass

@@ -1,67 +1,84 @@
-"""Turnless: angles that may be a turn more or less, because all that reads them takes a sine, a cosine or the nearest turn.
+"""Angles and axes that may be a turn more or less, because of their types.
 
     angle = atan2(y, x),  axis = nearest_period(shift + angle/DEGREE, reference),  s = sin(angle + other)
+
+`angle` may be a turn more: it is an Angle, and nothing takes its value by `wrap`. Where an axis may be in any turn, it is
+shift + angle/DEGREE, unless a statement reads it as a real number: as what a pitch or a gear moves along.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import sympy as sp
 
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.passes import assemble
 from derive.ir.primitives import (
     NearestPeriod,
-    Select,
+    Wrap,
 )
 from derive.ir.program import (
     Let,
     Program,
+    Require,
     Statement,
+    Status,
+    expressions,
     reads,
 )
 from derive.ir.symbols import (
-    is_condition,
     symbols_of,
 )
+from derive.ir.typed import check_statement
+from derive.ir.types import IllTypedError, Type, angles_in, angles_of
 
 
 def turnless(program: Program) -> frozenset[sp.Symbol]:
-    """The names that are such angles, in radians."""
-    found = {let.name for let in program.lets() if not is_condition(let.value)}
-    wanted = {s for o in program.outputs for s in symbols_of(o.value)}
-    while True:
-        kept = found - wanted - {s for statement in program.body for s in _counted(statement, found)}
-        if kept == found:
-            return frozenset(kept)
-        found = kept
+    """The names of angles whose turn nobody asks for."""
+    values = [*(e for s in program.body for e in expressions(s)), *(o.value for o in program.outputs)]
+    wrapped = {s for value in values for node in value.atoms(Wrap) for s in symbols_of(node)}
+    answered = {s for output in program.outputs for s in symbols_of(output.value)}
+    return frozenset(n for n, kind in angles_in(program.body).items() if kind is Type.ANGLE) - wrapped - answered
 
 
-def _counted(statement: Statement, angles: set[sp.Symbol]) -> set[sp.Symbol]:
-    """What a statement reads in a way in which turns count."""
-    if not isinstance(statement, Let):
-        return reads(statement)
-    value = statement.value
-    if isinstance(value, NearestPeriod):
-        direction, near = value.args
-        return symbols_of(near) | _beside_angles(direction, DEGREE)
-    if statement.name in angles:
-        if isinstance(value, Select):
-            return symbols_of(value.args[0]).union(*(_beside_angles(side) for side in value.args[1:]))
-        return _beside_angles(value)
-    return _beside_sines(value)
+def any_turn(program: Program) -> Program:
+    """The program for inputs that are known to be good: no look at them, and any turn of an axis that is only an angle."""
+    body = [s for s in program.body if not (isinstance(s, Require) and s.otherwise is Status.BAD_INPUT)]
+    counted: set[sp.Symbol] = set()
+    while (more := _read_as_numbers(body, counted)) is not None:
+        counted |= more
+    return assemble(program.name, [_in_any_turn(s, counted) for s in body], program.outputs)
 
 
-def _beside_angles(value: sp.Expr, unit: sp.Expr = sp.S.One) -> set[sp.Symbol]:
-    """What a sum reads beside terms that are an angle or its negative, in a unit, and beside sines of such sums."""
-    terms = sp.Add.make_args(sp.expand(value))
-    return set[sp.Symbol]().union(*(_beside_sines(t) for t in terms if not (t * unit).is_Symbol and not (-t * unit).is_Symbol))
+def _in_any_turn(statement: Statement, counted: set[sp.Symbol]) -> Statement:
+    """The statement without the choice of a turn, unless that counts."""
+    if not isinstance(statement, Let) or not isinstance(statement.value, NearestPeriod) or statement.name in counted:
+        return statement
+    return replace(statement, value=statement.value.args[0], turn_of="")
 
 
-def _beside_sines(value: sp.Basic) -> set[sp.Symbol]:
-    """What a value reads, of the arguments of its sines only what is no angle in them."""
-    if isinstance(value, sp.sin | sp.cos):
-        return _beside_angles(value.args[0])
-    if not value.args:
-        return symbols_of(value)
-    return set[sp.Symbol]().union(*map(_beside_sines, value.args))
+def _read_as_numbers(body: list[Statement], counted: set[sp.Symbol]) -> set[sp.Symbol] | None:
+    """The axes of the first statement that needs numbers where all others but the counted ones are in any turn."""
+    known: dict[sp.Symbol, Type] = {}
+    chosen = {s.name for s in body if isinstance(s, Let) and isinstance(s.value, NearestPeriod)}
+    for statement in (_in_any_turn(s, counted) for s in body):
+        try:
+            check_statement(statement, known)
+            known |= angles_of(statement, known)
+        except IllTypedError:
+            found = (_behind(body, reads(statement)) & chosen) - counted
+            if not found:
+                raise
+            return found
+    return None
+
+
+def _behind(body: list[Statement], names: set[sp.Symbol]) -> set[sp.Symbol]:
+    """The names, and what is behind those that are bound to more than a choice of a turn."""
+    values = {s.name: s.value for s in body if isinstance(s, Let) and not isinstance(s.value, NearestPeriod)}
+    found, pending = set[sp.Symbol](), set(names)
+    while pending:
+        name = pending.pop()
+        found.add(name)
+        pending |= symbols_of(values[name]) - found if name in values else set()
+    return found

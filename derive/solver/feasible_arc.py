@@ -27,6 +27,7 @@ from derive.ir.primitives import (
     NearestOnArc,
     Root,
     Select,
+    Wrap,
 )
 from derive.ir.program import (
     Let,
@@ -204,8 +205,8 @@ def nearest_on_arc(
         Let(divisor, Select(turns, swing, one)),
         Let(highest, Select(turns, _cosine_of((size - level) / divisor), one), "the arc: cosines from its centre"),
         Let(lowest, Select(turns, _cosine_of((-size - level) / divisor), -one)),
-        Let(near, Atan2(Root((1 - highest) * (1 + highest)), highest)),
-        Let(far, Atan2(Root((1 - lowest) * (1 + lowest)), lowest)),
+        Let(near, Wrap(Atan2(Root((1 - highest) * (1 + highest)), highest))),
+        Let(far, Wrap(Atan2(Root((1 - lowest) * (1 + lowest)), lowest))),
         Let(centre, Atan2(across, along)),
         Let(before, Atan2(sin_u, cos_u)),
         Let(side, Select(sp.Ge(along * sin_u - across * cos_u, 0), one, -one)),

@@ -28,6 +28,8 @@ from derive.ir.program import (
     reads,
 )
 from derive.ir.symbols import (
+    Flag,
+    is_count,
     symbols_of,
 )
 from derive.optimize.control_flow import Arms, Item
@@ -40,18 +42,23 @@ def array_arm_lines(
     holds, fails = ([line for item in side for line in lines(item)] for side in (arms.holds, arms.fails))
     condition, results = printer.print(arms.condition), [spelled(name.name) for name in arms.names]
     if symbols_of(arms.condition) <= set(constants):
-        declared = [f"{name}: Real" for name in results]
+        declared = [f"{spelled(name.name)}: {_kind(name)}" for name in arms.names]
         return [*declared, *fold(f"if {condition}:"), *_indented(holds), "else:", *_indented(fails)]
-    given = sorted(spelled(s.name) for s in _read(arms.fails) - set(constants))
+    kinds = {spelled(s.name): _kind(s) for s in sorted(_read(arms.fails) - set(constants), key=lambda s: spelled(s.name))}
     function, answer = _unused(f"elsewhere_{results[0]}", holds), tuple_of(results)
     return [
         "",
-        *fold(f"def {function}({', '.join(f'{name}: Real' for name in given)}) -> Reals:"),
+        *fold(f"def {function}({', '.join(f'{name}: {kind}' for name, kind in kinds.items())}) -> Reals:"),
         *_indented([*fails, *fold(f"return {answer}")]),
         "",
         *holds,
-        *_assigned(results, f"elsewhere({condition}, {answer}, {function}, {tuple_of(given)})"),
+        *_assigned(results, f"elsewhere({condition}, {answer}, {function}, {tuple_of(list(kinds))})"),
     ]
+
+
+def _kind(name: sp.Symbol) -> str:
+    """What a name is in rows."""
+    return "Truth" if isinstance(name, Flag) else "Whole" if is_count(name) else "Real"
 
 
 def _unused(function: str, holds: Sequence[str]) -> str:

@@ -60,9 +60,9 @@ def shared(kin: Kinematics) -> list[Method]:
     constants = {o.name for o in kin.setup.outputs}
     found: list[Method] = []
     for program in kin.shared:
-        given = Argument(GIVEN, "Reals", tuple(s.name for s in program.inputs if s.name not in constants))
+        given = Argument(GIVEN, "Values", tuple(s.name for s in program.inputs if s.name not in constants))
         outputs = tuple(o.name for o in program.outputs)
-        found.append(Method(program.name, f"{program.summary}.", program, (given,), "Reals", outputs, is_shared=True))
+        found.append(Method(program.name, f"{program.summary}.", program, (given,), "Values", outputs, is_shared=True))
     return found
 
 
@@ -74,7 +74,7 @@ def every_root(kin: Kinematics) -> list[Method]:
     joints = Argument("joints", "Reals", tuple(j.symbol.name for j in kin.mechanism.joints))
     given = tuple(o.name for o in kin.search_given.outputs)
     return [
-        Method("search_given", "What the search is given.", kin.search_given, (*pose, *_choice(kin)), "Reals", given),
+        Method("search_given", "What the search is given.", kin.search_given, (*pose, *_choice(kin)), "Values", given),
         Method("from_joints", "The axes of joints.", kin.from_joints, (joints, *_choice(kin)[1:]), "Reals", _axes(kin).shape),
     ]
 

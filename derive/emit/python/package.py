@@ -84,7 +84,7 @@ _EXPORTS = (
     "Parameter", "Singularity", "Solution", "Status", "catalogue",
 )  # fmt: skip
 _ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Signs", "Turns", "Vector", "passed", "require")
-_ARRAY_HELPERS = ("Real", "atan2", "degrees", "elsewhere", "opposite", "refused", "root", "sqrt")
+_ARRAY_HELPERS = ("Real", "atan2", "degrees", "Truth", "Whole", "elsewhere", "opposite", "refused", "root", "sqrt")
 """What programs on arrays call or name, depending on how an expression is spelled."""
 _CHUNK = 8192
 """Rows of a batch at a time: 64 KiB an array."""
@@ -168,6 +168,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     arrays = [_untold(m) for m in (*shared(kin), *forwards(kin), branch(kin), limits(kin), *carried(kin))]
     array_programs = _array_programs(kin)
     array_types = _ARRAY_TYPES + (("advanced", "initial", "settled") if any(has_loop(m.program) for m in arrays) else ())
+    array_types += ("Values",) if any(m.is_shared for m in arrays) else ()
     reasons = explained(reasons_of(kin))
     bodies = [scalar_body(m, reasons) if m.is_explained else scalar_body(_untold(m)) for m in scalar]
     context = {

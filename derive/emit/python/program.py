@@ -21,9 +21,11 @@ from derive.ir.constants import (
 )
 from derive.ir.passes import told_in
 from derive.ir.primitives import (
+    Atan2,
     NearestPeriod,
     Select,
     ToReal,
+    Wrap,
 )
 from derive.ir.program import (
     Call,
@@ -233,6 +235,7 @@ def functions(programs: Sequence[Program]) -> list[str]:
         found |= {"solve"} if has_system(program) else set()
         for node in (n for v in values for n in sp.preorder_traversal(v)):
             found |= {FUNCTION_KEYS[type(node)]} if type(node) in FUNCTION_KEYS else set()
+            found |= {"atan2", "cos", "sin"} if isinstance(node, Wrap) and not isinstance(node.args[0], Atan2) else set()
             found |= {DEGREE.name} if node == DEGREE else set()
     return sorted(found)
 

@@ -29,7 +29,6 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     count,
-    real,
     symbols_of,
 )
 from derive.kinematics.kinematics import Kinematics
@@ -47,16 +46,14 @@ from derive.optimize.symmetry import with_twins
 from derive.optimize.unroll import (
     REFUSAL,
     Sign,
-    any_turn,
     choices,
-    counted_turns,
     is_straight,
     specialised,
     suffixed,
     unroll,
     with_limits,
-    without_words,
 )
+from derive.optimize.without_periods import any_turn
 from derive.solver.folds import far_from_folds
 
 NO_OFFSETS = "no_offsets"
@@ -104,9 +101,7 @@ def every_branch(kin: Kinematics) -> Program:
 
 def branches(kin: Kinematics, one: Program) -> Program:
     """All branches, each axis in any turn. one: a single branch for input that is trusted."""
-    every = with_twins(unroll(one, signs(kin)))
-    counted = [name for name in every.bound() if real(without_words(name.name, signs(kin))[0]) in counted_turns(one)]
-    return common_parts(any_turn(every, counted), signs(kin), _constants(kin))
+    return common_parts(any_turn(with_twins(unroll(one, signs(kin)))), signs(kin), _constants(kin))
 
 
 def array_method(kin: Kinematics) -> Method:
@@ -172,7 +167,7 @@ def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
     position, rotation, sign_values, _, reference = branch(kin).arguments
     optional = replace(reference, default=repeated("0.0", len(reference.shape)))
     one = _trusted(kin)
-    single = any_turn(with_twins(one), counted_turns(one))
+    single = any_turn(with_twins(one))
     return (
         Method(
             "every_branch", "Every slot: its axes, or the number of its status.", every_branch(kin),

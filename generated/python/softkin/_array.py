@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,15 +15,17 @@ from softkin._types import Status
 
 __all__ = [
     "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Signs", "Turns", "Vector",
-    "StartedPrograms", "Truth", "Whole", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "opposite", "passed",
+    "StartedPrograms", "Truth", "Values", "Whole", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "opposite", "passed",
     "refused", "require", "root", "select", "settled", "sin", "solve", "sqrt",
 ]  # fmt: skip
 
 Array: TypeAlias = NDArray[np.float64]
-Real: TypeAlias = Array | float
+Real: TypeAlias = NDArray[np.floating[Any]] | float
 """A value for every row, or one for all."""
 Reals: TypeAlias = tuple[Real, ...]
 Whole: TypeAlias = NDArray[np.int64] | int
+Values: TypeAlias = tuple[Any, ...]
+"""Numbers and truths together."""
 Signs: TypeAlias = tuple[Whole, ...]
 Turns: TypeAlias = tuple[Whole, ...]
 Vector: TypeAlias = tuple[Real, Real, Real]
@@ -100,7 +102,7 @@ def opposite(condition: Truth) -> Truth:
     return ~condition if isinstance(condition, np.ndarray) else not condition
 
 
-def elsewhere(condition: Truth, values: Reals, other: Callable[..., Reals], given: Reals) -> Reals:
+def elsewhere(condition: Truth, values: Reals, other: Callable[..., Reals], given: Values) -> Reals:
     """The values where a condition holds; in the other rows, what `other` makes of what is given there."""
     if everywhere(condition):
         return values
@@ -184,7 +186,10 @@ def degrees(y: Real, x: Real) -> Real:
     return angle
 
 
-def select(condition: Truth, first: Real, second: Real) -> Real:
+_Number = TypeVar("_Number", Real, Whole)
+
+
+def select(condition: Truth, first: _Number, second: _Number) -> _Number:
     """The first where the condition holds, else the second. Nothing is put together where it holds in all rows."""
     if everywhere(condition):
         return first

@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import nan
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple, NoReturn, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, Protocol, TypeAlias
 
 from softkin._configuration import (
     AUTOMATIC,
@@ -130,7 +130,7 @@ class Mechanism(ABC):
     parameters: Mapping[str, float]
     """The parameters as given: flags are bool, directions int."""
 
-    def _accept(self, *values: float) -> list[float]:
+    def _accept(self, *values: float) -> list[Any]:
         """The parameters in the order of `PARAMETERS`, each in its type."""
         found = [parameter_value(self.NAME, p, v) for p, v in zip(self.PARAMETERS, values, strict=True)]
         self.parameters = MappingProxyType({p.name: v for p, v in zip(self.PARAMETERS, found, strict=True)})

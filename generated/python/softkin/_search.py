@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from softkin._configuration import AUTOMATIC, Slot, slots
 from softkin._core import Mechanism
-from softkin._types import Diagnosis, FrameLike, Numbers, Reals, Rotation, Signs, Solution, Status, Turns, Vector
+from softkin._types import Diagnosis, FrameLike, Numbers, Reals, Rotation, Signs, Solution, Status, Turns, Values, Vector
 
 _SAME = 2e-3
 """Axes nearer than this (degrees, lengths) are one solution of a branch: where the search only touches zero, it is met again
@@ -84,11 +84,11 @@ class SearchedInverse(Mechanism):
     @abstractmethod
     def _search_given(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
-    ) -> Reals | Status:
+    ) -> Values | Status:
         """What the search is given."""
 
     @abstractmethod
-    def _all_joints(self, given: Reals) -> list[Reals]:
+    def _all_joints(self, given: Values) -> list[Reals]:
         """The joints at every root, nearest to the reference first."""
 
     @abstractmethod

@@ -6,12 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import NamedTuple, Self, TypeAlias
+from typing import Any, NamedTuple, Self, TypeAlias
 
 Vector: TypeAlias = tuple[float, float, float]
 Rotation: TypeAlias = tuple[Vector, Vector, Vector]
 """Three rows; the columns are the axes of the frame."""
 Reals: TypeAlias = tuple[float, ...]
+Values: TypeAlias = tuple[Any, ...]
+"""Numbers and truths together."""
 Signs: TypeAlias = tuple[int, ...]
 """Of the branches: 1 for byte 1, -1 for byte 2."""
 Turns: TypeAlias = tuple[int, ...]

@@ -67,6 +67,7 @@ from softkin._types import (
     Signs,
     Status,
     Turns,
+    Values,
     Vector,
 )
 
@@ -474,7 +475,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             swing_scale_q3_tried=swing_scale_q3_tried, searched=searched,
         )
 
-    def _try_joint(self, given: Reals) -> Reals | Status:
+    def _try_joint(self, given: Values) -> Values | Status:
         """What a trial leaves of the closure, its slope, and what may turn fast with the joint."""
         (
             free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
@@ -677,7 +678,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             sin_q2_tried,
         )
 
-    def _finish_root(self, given: Reals) -> Reals | Status:
+    def _finish_root(self, given: Values) -> Values | Status:
         """The joints at a root, improved by Newton's method, and whether they are wanted."""
         (
             free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
@@ -987,7 +988,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
         return (fits, q1, q2, q3, q4, q5, q6)
 
-    def _find_root(self, given: Reals) -> Reals | Status:
+    def _find_root(self, given: Values) -> Values | Status:
         """The joints at the root that is nearest to the start; zeros where none is looked for."""
         (
             free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
@@ -1017,7 +1018,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
 
     def _search_given(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
-    ) -> Reals | Status:
+    ) -> Values | Status:
         """What the search is given."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
@@ -1808,7 +1809,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         """Whether there is no closed form for this machine."""
         return self._constants.searched
 
-    def _all_joints(self, given: Reals) -> list[Reals]:
+    def _all_joints(self, given: Values) -> list[Reals]:
         """The joints at every root of a search."""
         (
             free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,

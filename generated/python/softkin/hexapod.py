@@ -61,6 +61,7 @@ from softkin._types import (
     Signs,
     Status,
     Turns,
+    Values,
     Vector,
 )
 from softkin._unrolled.hexapod import unrolled
@@ -1167,7 +1168,7 @@ class Hexapod(IterativeForward):
             least_cos_base=least_cos_base, least_cos_plate=least_cos_plate,
         )
 
-    def _find_platform(self, given: Reals) -> Reals | Status:
+    def _find_platform(self, given: Values) -> Values | Status:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""
         (
             axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_r11, start_r12, start_r13, start_r21,

@@ -20,9 +20,9 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 38 additions, 58 multiplications, 15 divisions, 2 square roots, 4 sines
-    inverse: 62 additions, 75 multiplications, 29 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 245 additions, 300 multiplications, 116 divisions, 16 square roots, 8 sines
+    forward: 38 additions, 54 multiplications, 13 divisions, 2 square roots, 4 sines
+    inverse: 62 additions, 71 multiplications, 27 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 245 additions, 284 multiplications, 108 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -349,9 +349,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -375,18 +375,15 @@ class KinType12XY(OffsetKinematics):
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
         # rod upper
-        # rod rear
         if swap_xy:
             span_upper_x = y
             span_upper_y = x
-            span_rear_x = -link_length_3*y/link_length_2
-            span_rear_y = -link_length_3*x/link_length_2
         else:
             span_upper_x = x
             span_upper_y = y
-            span_rear_x = -link_length_3*x/link_length_2
-            span_rear_y = -link_length_3*y/link_length_2
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
+        span_rear_x = -(y if swap_xy else x)*link_length_3/link_length_2  # rod rear
+        span_rear_y = -(x if swap_xy else y)*link_length_3/link_length_2  # rod rear
         branch_w = (
             (
                 link_length_1*link_length_2*cos_a1*cos_a2 + link_length_1*link_length_3*cos_a1*cos_a2
@@ -430,9 +427,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -516,18 +513,13 @@ class KinType12XY(OffsetKinematics):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-        # rod rear
-        if swap_xy:
-            span_rear_x = -link_length_3*y/link_length_2
-            span_rear_y = -link_length_3*x/link_length_2
-        else:
-            span_rear_x = -link_length_3*x/link_length_2
-            span_rear_y = -link_length_3*y/link_length_2
+        span_rear_x = -(y if swap_xy else x)*link_length_3/link_length_2  # rod rear
         along_a2 = (
             (link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1 - link_length_1*link_length_3*sin_a1)
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
+        span_rear_y = -(x if swap_xy else y)*link_length_3/link_length_2  # rod rear
         across_a2 = (
             (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
             /link_length_2
@@ -571,9 +563,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
         rod_2_x = x - centre_2_x
-        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
         rod_2_y = y - centre_2_y
         type2_arms_aligned = (
             assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
@@ -664,9 +656,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -690,18 +682,15 @@ class KinType12XY(OffsetKinematics):
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
         # rod upper
-        # rod rear
         if swap_xy:
             span_upper_x = y
             span_upper_y = x
-            span_rear_x = -link_length_3*y/link_length_2
-            span_rear_y = -link_length_3*x/link_length_2
         else:
             span_upper_x = x
             span_upper_y = y
-            span_rear_x = -link_length_3*x/link_length_2
-            span_rear_y = -link_length_3*y/link_length_2
         margin_stretched_1 = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
+        span_rear_x = -(y if swap_xy else x)*link_length_3/link_length_2  # rod rear
+        span_rear_y = -(x if swap_xy else y)*link_length_3/link_length_2  # rod rear
         margin_stretched_2 = (
             (
                 link_length_1*link_length_2*cos_a1*cos_a2 + link_length_1*link_length_3*cos_a1*cos_a2
@@ -754,9 +743,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -782,41 +771,35 @@ class KinType12XY(OffsetKinematics):
         if swap_xy:
             slope_1_by_x = 2.0*x + 2.0*link_length_1*cos_a1
             slope_1_by_y = 2.0*y + 2.0*link_length_1*sin_a1
-            slope_2_by_x = (
-                -2.0
-                *(
-                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
-                    - link_length_3*x/link_length_2
-                )
-                *link_length_3/link_length_2
-            )
-            slope_2_by_y = (
-                -2.0*link_length_3
-                *(
-                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                    - link_length_3*y/link_length_2
-                )
-                /link_length_2
-            )
         else:
             slope_1_by_x = 2.0*x + 2.0*link_length_1*sin_a1
             slope_1_by_y = 2.0*y + 2.0*link_length_1*cos_a1
-            slope_2_by_x = (
-                -2.0*link_length_3
-                *(
-                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                    - link_length_3*x/link_length_2
-                )
-                /link_length_2
+        slope_2_by_x = (
+            -2.0
+            *(
+                -link_length_5*sin_a2 - (
+                    1.0 + link_length_3/link_length_2
+                )*link_length_1*cos_a1 - link_length_3*x/link_length_2
+                if swap_xy
+                else link_length_5*cos_a2 - (
+                    1.0 + link_length_3/link_length_2
+                )*link_length_1*sin_a1 - link_length_3*x/link_length_2
             )
-            slope_2_by_y = (
-                -2.0
-                *(
-                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
-                    - link_length_3*y/link_length_2
-                )
-                *link_length_3/link_length_2
+            *link_length_3/link_length_2
+        )
+        slope_2_by_y = (
+            -2.0
+            *(
+                link_length_5*cos_a2 - (
+                    1.0 + link_length_3/link_length_2
+                )*link_length_1*sin_a1 - link_length_3*y/link_length_2
+                if swap_xy
+                else -link_length_5*sin_a2 - (
+                    1.0 + link_length_3/link_length_2
+                )*link_length_1*cos_a1 - link_length_3*y/link_length_2
             )
+            *link_length_3/link_length_2
+        )
         # of the closure by the position: zero in a type 2 singularity
         determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x
         # nothing controls the plate
@@ -955,18 +938,13 @@ class KinType12XY(OffsetKinematics):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-        # rod rear
-        if swap_xy:
-            span_rear_x = -flange_y*link_length_3/link_length_2
-            span_rear_y = -flange_x*link_length_3/link_length_2
-        else:
-            span_rear_x = -flange_x*link_length_3/link_length_2
-            span_rear_y = -flange_y*link_length_3/link_length_2
+        span_rear_x = -(flange_y if swap_xy else flange_x)*link_length_3/link_length_2  # rod rear
         along_a2 = (
             (link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1 - link_length_1*link_length_3*sin_a1)
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
+        span_rear_y = -(flange_x if swap_xy else flange_y)*link_length_3/link_length_2  # rod rear
         across_a2 = (
             (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
             /link_length_2
@@ -1010,9 +988,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
         rod_2_x = flange_x - centre_2_x
-        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
         rod_2_y = flange_y - centre_2_y
         type2_arms_aligned = (
             assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
@@ -1071,9 +1049,9 @@ class KinType12XY(OffsetKinematics):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = (-link_length_2*pivot_rear_y if swap_xy else -link_length_2*pivot_rear_x)/link_length_3
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = (-link_length_2*pivot_rear_x if swap_xy else -link_length_2*pivot_rear_y)/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -1097,18 +1075,15 @@ class KinType12XY(OffsetKinematics):
         foot_y = along_centres*apart_2_y
         flange_y = centre_1_y + foot_y + apart_2_x*rise
         # rod upper
-        # rod rear
         if swap_xy:
             span_upper_x = flange_y
             span_upper_y = flange_x
-            span_rear_x = -flange_y*link_length_3/link_length_2
-            span_rear_y = -flange_x*link_length_3/link_length_2
         else:
             span_upper_x = flange_x
             span_upper_y = flange_y
-            span_rear_x = -flange_x*link_length_3/link_length_2
-            span_rear_y = -flange_y*link_length_3/link_length_2
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
+        span_rear_x = -(flange_y if swap_xy else flange_x)*link_length_3/link_length_2  # rod rear
+        span_rear_y = -(flange_x if swap_xy else flange_y)*link_length_3/link_length_2  # rod rear
         branch_w = (
             (
                 link_length_1*link_length_2*cos_a1*cos_a2 + link_length_1*link_length_3*cos_a1*cos_a2

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import sympy as sp
 
+from derive.emit.python.printer import ScalarPrinter
+from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
 from derive.ir.passes import assemble
-from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, ToReal
+from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Solve, Statement, Status
 from derive.ir.symbols import Flag, called, count, flag, real
 from derive.ir.types import IllTypedError, Type, type_of
@@ -100,8 +104,7 @@ def test_assembling_keeps_types_and_drops_what_else_is_known() -> None:
     program = assemble("p", [Let(A, length > 1), Let(X, Select(A, ToReal(N), length))], [Output("o", X), Output("n", N)])
     assert [type(s) for s in program.bound()] == [Flag, sp.Symbol]
     assert set(program.inputs) == {N, real("length")}
-    assert called("other", A) == flag("other") and called("other", N) == count("other")
-    assert called("other", length) == real("other")
+    assert [called("other", like) for like in (A, N, length)] == [flag("other"), count("other"), real("other")]
 
 
 def test_programs_run_in_their_types() -> None:
@@ -109,3 +112,70 @@ def test_programs_run_in_their_types() -> None:
     values, _ = run(_program(outputs=tuple(outputs)), {"a": [0, 1], "b": 0, "n": [3.0, 4.0], "m": 0, "x": 0.25, "y": 0.0})  # type: ignore[dict-item]
     assert values["f"].dtype == bool and values["f"].tolist() == [False, True]
     assert values["k"].tolist() == [4, 5] and np.allclose(values["v"], [0.25, 2.0])
+
+
+Q, R, DIRECTION = real("q"), real("r"), Atan2(Y, X)
+ANGLES = {Q: Type.ANGLE, R: Type.ANGLE, real("h"): Type.HEADING}
+
+
+@pytest.mark.parametrize(
+    "value, expected",
+    [
+        (DIRECTION, Type.ANGLE), (Q + R, Type.ANGLE), (Q - 2 * R, Type.ANGLE), (Q + X, Type.ANGLE),
+        (180 * DEGREE - Q, Type.ANGLE), (Select(X > 0, Q, DIRECTION), Type.ANGLE), (Select(X > 0, Q, 0), Type.ANGLE),
+        (sp.sin(Q + R), Type.REAL), (sp.cos(X), Type.REAL),
+        (NearestOnArc(Q, R + X, Y), Type.ANGLE), (Wrap(Q - R), Type.REAL), (Wrap(X), Type.REAL), (Q / DEGREE, Type.HEADING),
+        ((Q + R) / DEGREE + X, Type.HEADING), (2 * X - real("h"), Type.HEADING), (NearestPeriod(Q / DEGREE + X, Y), Type.REAL),
+        (NearestPeriod(real("h"), Y), Type.REAL), (NearestPeriod(X, Y) * Y, Type.REAL), (Wrap(DIRECTION) * X, Type.REAL),
+    ],
+)  # fmt: skip
+def test_angles_are_added_and_asked_for_sines(value: sp.Basic, expected: Type) -> None:
+    assert type_of(value, ANGLES) is expected
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        X * Q, Q / 2, Q * R, Q**2, Q * DEGREE, Root(Q), sp.Abs(Q), Q > 0, sp.And(X > 0, Q < R), Atan2(Q, X), Q / DEGREE + R,
+        NearestPeriod(Q, X), NearestPeriod(Q / DEGREE, R), NearestPeriod(X, Q / DEGREE), NearestOnArc(X, Y, Q), ToReal(Q),
+        sp.sin(Q / DEGREE), X * real("h"), real("h") * DEGREE, Select(Q > 0, X, Y), Q + N, Wrap(real("h")), X * DIRECTION,
+    ],
+)  # fmt: skip
+def test_an_angle_is_no_number_before_its_turn_is_chosen(value: sp.Basic) -> None:
+    with pytest.raises(IllTypedError):
+        type_of(value, ANGLES)
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        Let(real("travel"), Q * X), Require(Q > 0, Status.UNREACHABLE), Solve((real("v"),), (X,), (Q,)),
+        Call(SHARED, ((A, A), (N, N), (X, Q)), ()), _loop(start=(X, sp.false, sp.Integer(0)), following=(Q, X > 0, count("k"))),
+        _loop(start=(Q, sp.false, sp.Integer(0)), following=(real("s") * X, X > 0, count("k"))),
+    ],
+)  # fmt: skip
+def test_a_name_that_is_bound_to_an_angle_is_one(statement: Statement) -> None:
+    angle = Let(Q, DIRECTION)
+    with pytest.raises(BrokenProgram):
+        verify(_program(angle, statement))
+    verify(_program(replace(angle, value=Wrap(DIRECTION)), statement))
+
+
+def test_a_loop_may_turn_and_a_call_answers_with_angles() -> None:
+    turning = _loop(start=(DIRECTION, sp.false, sp.Integer(0)), following=(real("s") + X, X > 0, count("k")))
+    verify(_program(turning, Let(real("c"), sp.cos(real("s")))))
+    told = Program("told", (X, Y), (), (Output("angle", DIRECTION),))
+    call = Call(told, (), (real("angle"),))
+    verify(_program(call, Let(real("c"), sp.cos(real("angle")))))
+    with pytest.raises(BrokenProgram):
+        verify(_program(call, Let(real("c"), X * real("angle"))))
+
+
+def test_wrap_is_the_angle_of_a_direction() -> None:
+    angles = np.array([-3.5 * np.pi, -np.pi, -3.0, -1e-9, 0.0, 1.0, np.pi, np.pi + 0.5, 9.0, 40.0])
+    values, _ = run(_program(outputs=(Output("w", Wrap(X)),)), {n: angles if n == "x" else np.zeros(10) for n in "abnmxy"})
+    assert np.all((values["w"] > -np.pi) & (values["w"] <= np.pi))
+    np.testing.assert_allclose(np.exp(1j * values["w"]), np.exp(1j * angles), atol=1e-14)
+    assert values["w"][6] == np.pi and values["w"][1] == np.pi
+    text = ScalarPrinter().print(Wrap(X))
+    assert text == "arctan2(sin(x) + 0.0, cos(x) + 0.0)" and ScalarPrinter().print(Wrap(DIRECTION)) == "arctan2(y + 0.0, x + 0.0)"

@@ -86,9 +86,10 @@ BROKEN = {
     "an infinity": (program(Let(Z, sp.oo * sp.Abs(X), "")), "is not a primitive"),
     "not a number": (program(Let(Z, sp.nan)), "NaN is not a primitive"),
     "an imaginary number": (program(Let(Z, sp.I * X)), "ImaginaryUnit is not a primitive"),
-    "an equation": (program(Require(sp.Eq(X, Y), Status.UNREACHABLE)), "Equality is not a primitive"),
-    "an inequation": (program(Require(sp.Ne(X, Y), Status.UNREACHABLE)), "Unequality is not a primitive"),
-    "a negation": (program(Require(sp.Not(sp.And(X > 0, sp.Eq(Y, 1), evaluate=False)), Status.OK)), "is not a primitive"),
+    "an equation": (program(Require(sp.Eq(X, Y), Status.UNREACHABLE)), "Eq(x, y) mixes types"),
+    "an inequation": (program(Require(sp.Ne(X, Y), Status.UNREACHABLE)), "Ne(x, y) mixes types"),
+    "a negation": (program(Require(sp.Not(sp.And(X > 0, sp.Eq(Y, 1), evaluate=False)), Status.OK)), "mixes types"),
+    "the opposite of a condition": (program(Require(sp.Not(sp.And(X > 0, Y > 1)), Status.OK)), "is not the opposite of a flag"),
 }
 
 

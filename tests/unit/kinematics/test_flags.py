@@ -9,11 +9,11 @@ import sympy as sp
 
 from derive.description.catalogue import MECHANISMS, catalogue
 from derive.description.mechanism import Mechanism, Role
+from derive.equations.choices import input_of, with_choices
 from derive.ir.primitives import Select
 from derive.ir.program import FindRoot, Iterate, Let, Program, Statement
 from derive.ir.symbols import PLACE, Flag, flag, is_condition, is_count, real
 from derive.kinematics.build import build
-from derive.kinematics.choices import input_of, with_choices
 from derive.kinematics.kinematics import Kinematics
 
 BY_NAME = {mechanism.name: mechanism for _, mechanism in catalogue(MECHANISMS)}

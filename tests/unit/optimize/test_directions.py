@@ -14,6 +14,7 @@ from derive.ir.primitives import (
     NearestPeriod,
     Root,
     Select,
+    Wrap,
 )
 from derive.ir.program import (
     Let,
@@ -25,6 +26,7 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     real,
 )
+from derive.ir.verify import BrokenProgram
 from derive.optimize.angle_addition import angles_first
 from derive.optimize.directions import plain_directions
 from derive.optimize.negation import without_minus
@@ -195,7 +197,7 @@ def test_a_sum_of_mere_directions_is_no_cosine() -> None:
 
 def test_an_angle_whose_turns_count_is_no_sum() -> None:
     lets = (Let(C1, X * U + Y * V), Let(S1, Y * U - X * V))
-    counted = of(*lets, Let(AXIS1, Atan2(S1, C1) / DEGREE), outputs=(AXIS1,))
+    counted = of(*lets, Let(AXIS1, Wrap(Atan2(S1, C1)) / DEGREE), outputs=(AXIS1,))
     assert angles_first(counted, frozenset()) == counted
     nearest = of(*lets, axis(AXIS1, S1, C1), outputs=(AXIS1,))
     assert len(values(angles_first(nearest, frozenset()))["angle_q1"].free_symbols) == 2
@@ -207,11 +209,12 @@ def test_turns_count_wherever_more_than_a_sine_or_the_nearest_turn_is_taken() ->
     bound = (Let(angle, Atan2(X, Y)), Let(other, angle - T))
     assert turnless(of(*bound, Let(R, sp.sin(other + X)), outputs=(R,))) == {angle, other}
     assert turnless(of(*bound, Let(R, NearestPeriod(A - other / DEGREE, N)), outputs=(R,))) == {angle, other}
-    assert turnless(of(*bound, Let(R, sp.sin(other / 2)), outputs=(R,))) == set()
-    assert turnless(of(*bound, Let(R, NearestPeriod(other * X, N)), outputs=(R,))) == set()
-    assert turnless(of(*bound, Let(R, NearestPeriod(X, other)), outputs=(R,))) == set()
-    assert turnless(of(*bound, Let(R, Select(sp.Gt(other, 0), X, Y)), outputs=(R,))) == set()
-    assert turnless(of(*bound, outputs=(other,))) == set()
+    assert turnless(of(*bound, Let(R, Wrap(other)), outputs=(R,))) == {angle}
+    counted = (sp.sin(other / 2), NearestPeriod(other * X, N), NearestPeriod(X, other), Select(sp.Gt(other, 0), X, Y))
+    for value in counted:
+        with pytest.raises(BrokenProgram):
+            of(*bound, Let(R, value), outputs=(R,))
+    assert turnless(of(*bound, outputs=(other,))) == {angle}
 
 
 def test_the_opposite_direction_is_half_a_turn_away() -> None:
@@ -250,17 +253,19 @@ def test_a_quotient_that_reads_another_keeps_its_division() -> None:
 
 
 def test_an_angle_times_a_coordinate_of_its_direction_keeps_the_division() -> None:
-    program = of(*DIRECTION, axis(AXIS1, S1, C1), Let(E, C1 * Atan2(S1, C1)), outputs=(AXIS1, E))
+    program = of(*DIRECTION, axis(AXIS1, S1, C1), Let(E, C1 * Wrap(Atan2(S1, C1))), outputs=(AXIS1, E))
     assert "l" in values(plain_directions(program))
 
 
 def test_half_an_angle_counts_turns_though_its_sines_cancel() -> None:
     angle = real("angle")
-    program = of(Let(angle, Atan2(X, Y)), Let(R, sp.cos(angle / 2) - sp.sin(angle / 2)), outputs=(R,))
-    assert turnless(program) == set()
+    halves = {half: sp.cos(half / 2) - sp.sin(half / 2) for half in (angle, Wrap(angle))}
+    with pytest.raises(BrokenProgram):
+        of(Let(angle, Atan2(X, Y)), Let(R, halves[angle]), outputs=(R,))
+    assert turnless(of(Let(angle, Atan2(X, Y)), Let(R, halves[Wrap(angle)]), outputs=(R,))) == set()
 
 
 def test_an_axis_without_a_turn_of_its_own_is_not_turned_round() -> None:
     lets = (Let(C1, -X * U - Y * V), Let(S1, -X * V - Y))
-    program = of(*lets, Let(AXIS1, Atan2(S1, C1) / DEGREE), outputs=(AXIS1,))
+    program = of(*lets, Let(AXIS1, Wrap(Atan2(S1, C1)) / DEGREE), outputs=(AXIS1,))
     assert without_minus(program) == program

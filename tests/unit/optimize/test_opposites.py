@@ -13,6 +13,7 @@ from derive.ir.primitives import (
     NearestPeriod,
     Root,
     Select,
+    Wrap,
 )
 from derive.ir.program import (
     Let,
@@ -70,7 +71,7 @@ def test_an_angle_whose_turn_nobody_counts() -> None:
 
 
 def test_an_angle_whose_turn_counts_stays() -> None:
-    lets = (Let(S, -Root(X) * R), Let(ANGLE, Atan2(S, C)), Let(AXIS, A + ANGLE / DEGREE), Let(B, -L * S))
+    lets = (Let(S, -Root(X) * R), Let(ANGLE, Atan2(S, C)), Let(AXIS, A + Wrap(ANGLE) / DEGREE), Let(B, -L * S))
     found = values(with_fewer_signs(of(*lets, outputs=(AXIS, B))))
     assert found["angle"] == Atan2(-real("minus_s"), C)
 

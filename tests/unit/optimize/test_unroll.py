@@ -25,6 +25,7 @@ from derive.ir.program import (
     Status,
 )
 from derive.ir.symbols import (
+    count,
     real,
 )
 from derive.ir.verify import BrokenProgram, verify
@@ -33,7 +34,6 @@ from derive.kinematics.kinematics import Kinematics
 from derive.optimize.unroll import (
     REFUSAL,
     Sign,
-    any_turn,
     choices,
     is_straight,
     specialised,
@@ -41,6 +41,7 @@ from derive.optimize.unroll import (
     unroll,
     with_limits,
 )
+from derive.optimize.without_periods import any_turn
 
 A, B, C, X, Y = (real(n) for n in "abcxy")
 ELBOW, WRIST = Sign(real("sigma_elbow"), ("right", "left")), Sign(real("sigma_wrist"), ("down", "up"))
@@ -175,7 +176,7 @@ def kinematics(name: str) -> Kinematics:
 @pytest.mark.parametrize("name", SHAPES)
 def test_every_slot_is_the_branch_of_its_signs(name: str) -> None:
     kin = kinematics(name)
-    signs = tuple(Sign(real(f"sigma_{b.name}"), b.names) for b in kin.branches)
+    signs = tuple(Sign(count(f"sigma_{b.name}"), b.names) for b in kin.branches)
     looped = with_limits(kin.branch, kin.limits)
     unrolled = verify(unroll(looped, signs))
     assert len(unrolled.body) < max(2, 2 ** len(signs)) * len(looped.body)

@@ -14,7 +14,9 @@ from softkin._array import (
     Rotation,
     Signs,
     Turns,
+    Values,
     Vector,
+    Whole,
     absolute,
     advanced,
     atan2,
@@ -46,7 +48,7 @@ class ArrayPrograms(Programs):
         """Programs for a machine."""
         self.constants = constants
 
-    def try_joint(self, given: Reals, status: Codes) -> Reals:
+    def try_joint(self, given: Values, status: Codes) -> Values:
         """What a trial leaves of the closure, its slope, and what may turn fast with the joint."""
         (
             free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
@@ -75,7 +77,7 @@ class ArrayPrograms(Programs):
         slope_wrist_x_tried = goal_r12*j6_offset_x*slope_sin_q6_tried - goal_r11*j6_offset_x*slope_cos_q6_tried
         slope_wrist_y_tried = goal_r22*j6_offset_x*slope_sin_q6_tried - goal_r21*j6_offset_x*slope_cos_q6_tried
 
-        def elsewhere_cos_q1_tried(free_a1: Real, freed: Real, freed_angle: Real) -> Reals:
+        def elsewhere_cos_q1_tried(free_a1: Real, freed: Whole, freed_angle: Real) -> Reals:
             chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1, where it is free
             cos_q1_tried = cos(chosen_q1)  # its reference where it is free
             sin_q1_tried = sin(chosen_q1)
@@ -204,7 +206,7 @@ class ArrayPrograms(Programs):
             a3*slope_sin_swing_q3_tried/effective_q3_tried - d4*slope_cos_swing_q3_tried/effective_q3_tried
         )
 
-        def elsewhere_cos_q2_tried(free_a2: Real, freed: Real, freed_angle: Real) -> Reals:
+        def elsewhere_cos_q2_tried(free_a2: Real, freed: Whole, freed_angle: Real) -> Reals:
             chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2, where it is free
             cos_q2_tried = cos(chosen_q2)  # its reference where it is free
             sin_q2_tried = sin(chosen_q2)
@@ -300,7 +302,7 @@ class ArrayPrograms(Programs):
             sin_q2_tried,
         )
 
-    def finish_root(self, given: Reals, status: Codes) -> Reals:
+    def finish_root(self, given: Values, status: Codes) -> Values:
         """The joints at a root, improved by Newton's method, and whether they are wanted."""
         (
             free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
@@ -325,7 +327,7 @@ class ArrayPrograms(Programs):
         # q1: of the point from its axis
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
 
-        def elsewhere_cos_q1_tried(free_a1: Real, freed: Real, freed_angle: Real) -> Reals:
+        def elsewhere_cos_q1_tried(free_a1: Real, freed: Whole, freed_angle: Real) -> Reals:
             chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1, where it is free
             cos_q1_tried = cos(chosen_q1)  # its reference where it is free
             sin_q1_tried = sin(chosen_q1)
@@ -361,7 +363,7 @@ class ArrayPrograms(Programs):
         cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
         sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
 
-        def elsewhere_cos_q2_tried(free_a2: Real, freed: Real, freed_angle: Real) -> Reals:
+        def elsewhere_cos_q2_tried(free_a2: Real, freed: Whole, freed_angle: Real) -> Reals:
             chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2, where it is free
             cos_q2_tried = cos(chosen_q2)  # its reference where it is free
             sin_q2_tried = sin(chosen_q2)
@@ -629,7 +631,7 @@ class ArrayPrograms(Programs):
         )
         return (fits, q1, q2, q3, q4, q5, q6)
 
-    def find_root(self, given: Reals, status: Codes) -> Reals:
+    def find_root(self, given: Values, status: Codes) -> Values:
         """The joints at the root that is nearest to the start; zeros where none is looked for."""
         (
             free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
@@ -918,8 +920,8 @@ class ArrayPrograms(Programs):
         def elsewhere_q1(
             distance_q1_closed: Real, free_a1: Real, free_a2: Real, one_less_cos_q3_closed: Real,
             one_plus_cos_q3_closed: Real, r11: Real, r12: Real, r13: Real, r21: Real, r22: Real, r23: Real, r31: Real,
-            r32: Real, r33: Real, reach_closed: Real, ref_a4: Real, sigma_elbow: Real, sigma_shoulder: Real,
-            sigma_wrist: Real, sine_square_q3_closed: Real, wrist_x_closed: Real, wrist_x_from_q1_closed: Real,
+            r32: Real, r33: Real, reach_closed: Real, ref_a4: Real, sigma_elbow: Whole, sigma_shoulder: Whole,
+            sigma_wrist: Whole, sine_square_q3_closed: Real, wrist_x_closed: Real, wrist_x_from_q1_closed: Real,
             wrist_y_closed: Real, wrist_z_from_q1_closed: Real,
         ) -> Reals:
 

@@ -14,8 +14,10 @@ from softkin._array import (
     Reals,
     Rotation,
     Signs,
+    Truth,
     Turns,
     Vector,
+    Whole,
     absolute,
     atan2,
     cos,
@@ -219,7 +221,7 @@ class ArrayPrograms(Programs):
         def elsewhere_ahead_q1(
             ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, distance_q1: Real, r11: Real, r12: Real,
             r13: Real, r21: Real, r22: Real, r23: Real, r31: Real, r32: Real, r33: Real, ref_a6: Real,
-            sigma_wrist: Real, sin_q1_before_q1_for_q3: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
+            sigma_wrist: Whole, sin_q1_before_q1_for_q3: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
         ) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
@@ -325,7 +327,7 @@ class ArrayPrograms(Programs):
                 cos_q1_before_q1_for_q3: Real, cos_q5_before_q1_for_q3: Real, cos_q6_before_q1_for_q3: Real,
                 cos_q6_rate_q1_for_q3: Real, distance_q1: Real, r11: Real, r12: Real, r13: Real, r21: Real,
                 r21_from_q1_before_q6_before_q1_for_q3: Real, r22: Real, r23: Real, r31: Real, r32: Real, r33: Real,
-                radius_q6_before_q1_for_q3: Real, radius_q6_rate_q1_for_q3: Real, sigma_wrist: Real,
+                radius_q6_before_q1_for_q3: Real, radius_q6_rate_q1_for_q3: Real, sigma_wrist: Whole,
                 sin_q1_before_q1_for_q3: Real, sin_q6_before_q1_for_q3: Real, sin_q6_rate_q1_for_q3: Real,
                 value_q1_for_q3: Real, wrist_x: Real, wrist_x_from_q1_before_q1_for_q3: Real, wrist_y: Real,
                 wrist_y_from_q1_before_q1_for_q3: Real, wrist_z: Real,
@@ -2023,7 +2025,7 @@ class ArrayPrograms(Programs):
 
             def elsewhere_ahead_q1_left_down(
                 ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
-                follows_q1_for_q3_left_down: Real, sin_q1_before_q1_for_q3_left: Real,
+                follows_q1_for_q3_left_down: Truth, sin_q1_before_q1_for_q3_left: Real,
                 swept_cos_q1_for_q3_left_down: Real, swept_cost_q1_for_q3_left_down: Real,
                 swept_sin_q1_for_q3_left_down: Real, turn_q1_for_q3_left_down: Real, turned_cos_q1_for_q3_left_down: Real,
                 turned_cost_q1_for_q3_left_down: Real, turned_length_q1_for_q3_left_down: Real,

@@ -12,6 +12,7 @@ from softkin._array import (
     Signs,
     StartedPrograms,
     Turns,
+    Values,
     Vector,
     absolute,
     advanced,
@@ -39,7 +40,7 @@ class ArrayPrograms(StartedPrograms):
         """Programs for a machine."""
         self.constants = constants
 
-    def find_platform(self, given: Reals, status: Codes) -> Reals:
+    def find_platform(self, given: Values, status: Codes) -> Values:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""
         (
             axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_r11, start_r12, start_r13, start_r21,

@@ -85,9 +85,9 @@ class ArrayPrograms(Programs):
         sin_a2 = sin(a2)
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = select(swap_xy, -link_length_2*pivot_rear_y, -link_length_2*pivot_rear_x)/link_length_3
+        centre_2_x = -select(swap_xy, pivot_rear_y, pivot_rear_x)*link_length_2/link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = select(swap_xy, -link_length_2*pivot_rear_x, -link_length_2*pivot_rear_y)/link_length_3
+        centre_2_y = -select(swap_xy, pivot_rear_x, pivot_rear_y)*link_length_2/link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -112,21 +112,14 @@ class ArrayPrograms(Programs):
         def elsewhere_span_upper_x(x: Real, y: Real) -> Reals:
             span_upper_x = x  # rod upper
             span_upper_y = y  # rod upper
-            span_rear_x = -link_length_3*x/link_length_2  # rod rear
-            span_rear_y = -link_length_3*y/link_length_2  # rod rear
-            return (span_upper_x, span_upper_y, span_rear_x, span_rear_y)
+            return (span_upper_x, span_upper_y)
 
         span_upper_x = y  # rod upper
         span_upper_y = x  # rod upper
-        span_rear_x = -link_length_3*y/link_length_2  # rod rear
-        span_rear_y = -link_length_3*x/link_length_2  # rod rear
-        span_upper_x, span_upper_y, span_rear_x, span_rear_y = elsewhere(
-            swap_xy,
-            (span_upper_x, span_upper_y, span_rear_x, span_rear_y),
-            elsewhere_span_upper_x,
-            (x, y),
-        )
+        span_upper_x, span_upper_y = elsewhere(swap_xy, (span_upper_x, span_upper_y), elsewhere_span_upper_x, (x, y))
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
+        span_rear_x = -select(swap_xy, y, x)*link_length_3/link_length_2  # rod rear
+        span_rear_y = -select(swap_xy, x, y)*link_length_3/link_length_2  # rod rear
         branch_w = (
             (
                 link_length_1*link_length_2*cos_a1*cos_a2 + link_length_1*link_length_3*cos_a1*cos_a2
@@ -200,20 +193,13 @@ class ArrayPrograms(Programs):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-
-        def elsewhere_span_rear_x(x: Real, y: Real) -> Reals:
-            span_rear_x = -link_length_3*x/link_length_2  # rod rear
-            span_rear_y = -link_length_3*y/link_length_2  # rod rear
-            return (span_rear_x, span_rear_y)
-
-        span_rear_x = -link_length_3*y/link_length_2  # rod rear
-        span_rear_y = -link_length_3*x/link_length_2  # rod rear
-        span_rear_x, span_rear_y = elsewhere(swap_xy, (span_rear_x, span_rear_y), elsewhere_span_rear_x, (x, y))
+        span_rear_x = -select(swap_xy, y, x)*link_length_3/link_length_2  # rod rear
         along_a2 = (
             (link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1 - link_length_1*link_length_3*sin_a1)
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
+        span_rear_y = -select(swap_xy, x, y)*link_length_3/link_length_2  # rod rear
         across_a2 = (
             (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
             /link_length_2
@@ -258,9 +244,9 @@ class ArrayPrograms(Programs):
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = select(swap_xy, -link_length_2*pivot_rear_y, -link_length_2*pivot_rear_x)/link_length_3
+        centre_2_x = -select(swap_xy, pivot_rear_y, pivot_rear_x)*link_length_2/link_length_3
         rod_2_x = x - centre_2_x
-        centre_2_y = select(swap_xy, -link_length_2*pivot_rear_x, -link_length_2*pivot_rear_y)/link_length_3
+        centre_2_y = -select(swap_xy, pivot_rear_x, pivot_rear_y)*link_length_2/link_length_3
         rod_2_y = y - centre_2_y
         type2_arms_aligned = (
             assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
@@ -363,28 +349,24 @@ class ArrayPrograms(Programs):
 
         def elsewhere_centre_1_x_left(
             pivot_upper_x_left: Real, pivot_upper_x_right: Real, pivot_upper_y_left: Real, pivot_upper_y_right: Real,
-            x: Real, y: Real,
         ) -> Reals:
             centre_1_x_left = pivot_upper_x_left
             centre_1_y_left = pivot_upper_y_left
-            span_rear_x = -link_length_3*x/link_length_2  # rod rear
-            span_rear_y = -link_length_3*y/link_length_2  # rod rear
             centre_1_x_right = pivot_upper_x_right
             centre_1_y_right = pivot_upper_y_right
-            return (centre_1_x_left, centre_1_y_left, span_rear_x, span_rear_y, centre_1_x_right, centre_1_y_right)
+            return (centre_1_x_left, centre_1_y_left, centre_1_x_right, centre_1_y_right)
 
         centre_1_x_left = pivot_upper_y_left
         centre_1_y_left = pivot_upper_x_left
-        span_rear_x = -link_length_3*y/link_length_2  # rod rear
-        span_rear_y = -link_length_3*x/link_length_2  # rod rear
         centre_1_x_right = pivot_upper_y_right
         centre_1_y_right = pivot_upper_x_right
-        centre_1_x_left, centre_1_y_left, span_rear_x, span_rear_y, centre_1_x_right, centre_1_y_right = elsewhere(
+        centre_1_x_left, centre_1_y_left, centre_1_x_right, centre_1_y_right = elsewhere(
             swap_xy,
-            (centre_1_x_left, centre_1_y_left, span_rear_x, span_rear_y, centre_1_x_right, centre_1_y_right),
+            (centre_1_x_left, centre_1_y_left, centre_1_x_right, centre_1_y_right),
             elsewhere_centre_1_x_left,
-            (pivot_upper_x_left, pivot_upper_x_right, pivot_upper_y_left, pivot_upper_y_right, x, y),
+            (pivot_upper_x_left, pivot_upper_x_right, pivot_upper_y_left, pivot_upper_y_right),
         )
+        span_rear_x = -select(swap_xy, y, x)*link_length_3/link_length_2  # rod rear
         along_a2_left = (
             (
                 link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1_left
@@ -392,6 +374,7 @@ class ArrayPrograms(Programs):
             )
             /link_length_2
         )
+        span_rear_y = -select(swap_xy, x, y)*link_length_3/link_length_2  # rod rear
         across_a2_left = (
             (
                 link_length_1*link_length_2*cos_a1_left + link_length_1*link_length_3*cos_a1_left
@@ -447,13 +430,11 @@ class ArrayPrograms(Programs):
             + link_length_1*link_length_3*cos_a1_left/link_length_2
         )
         centre_2_x_left_left = (
-            select(swap_xy, -link_length_2*pivot_rear_y_left_left, -link_length_2*pivot_rear_x_left_left)
-            /link_length_3
+            -select(swap_xy, pivot_rear_y_left_left, pivot_rear_x_left_left)*link_length_2/link_length_3
         )
         rod_2_x_left_left = x - centre_2_x_left_left
         centre_2_y_left_left = (
-            select(swap_xy, -link_length_2*pivot_rear_x_left_left, -link_length_2*pivot_rear_y_left_left)
-            /link_length_3
+            -select(swap_xy, pivot_rear_x_left_left, pivot_rear_y_left_left)*link_length_2/link_length_3
         )
         rod_2_y_left_left = y - centre_2_y_left_left
         type2_arms_aligned_left_left = (
@@ -473,13 +454,11 @@ class ArrayPrograms(Programs):
             + link_length_1*link_length_3*cos_a1_left/link_length_2
         )
         centre_2_x_left_right = (
-            select(swap_xy, -link_length_2*pivot_rear_y_left_right, -link_length_2*pivot_rear_x_left_right)
-            /link_length_3
+            -select(swap_xy, pivot_rear_y_left_right, pivot_rear_x_left_right)*link_length_2/link_length_3
         )
         rod_2_x_left_right = x - centre_2_x_left_right
         centre_2_y_left_right = (
-            select(swap_xy, -link_length_2*pivot_rear_x_left_right, -link_length_2*pivot_rear_y_left_right)
-            /link_length_3
+            -select(swap_xy, pivot_rear_x_left_right, pivot_rear_y_left_right)*link_length_2/link_length_3
         )
         rod_2_y_left_right = y - centre_2_y_left_right
         type2_arms_aligned_left_right = (
@@ -573,13 +552,11 @@ class ArrayPrograms(Programs):
             + link_length_1*link_length_3*cos_a1_right/link_length_2
         )
         centre_2_x_right_left = (
-            select(swap_xy, -link_length_2*pivot_rear_y_right_left, -link_length_2*pivot_rear_x_right_left)
-            /link_length_3
+            -select(swap_xy, pivot_rear_y_right_left, pivot_rear_x_right_left)*link_length_2/link_length_3
         )
         rod_2_x_right_left = x - centre_2_x_right_left
         centre_2_y_right_left = (
-            select(swap_xy, -link_length_2*pivot_rear_x_right_left, -link_length_2*pivot_rear_y_right_left)
-            /link_length_3
+            -select(swap_xy, pivot_rear_x_right_left, pivot_rear_y_right_left)*link_length_2/link_length_3
         )
         rod_2_y_right_left = y - centre_2_y_right_left
         type2_arms_aligned_right_left = (
@@ -599,13 +576,11 @@ class ArrayPrograms(Programs):
             + link_length_1*link_length_3*cos_a1_right/link_length_2
         )
         centre_2_x_right_right = (
-            select(swap_xy, -link_length_2*pivot_rear_y_right_right, -link_length_2*pivot_rear_x_right_right)
-            /link_length_3
+            -select(swap_xy, pivot_rear_y_right_right, pivot_rear_x_right_right)*link_length_2/link_length_3
         )
         rod_2_x_right_right = x - centre_2_x_right_right
         centre_2_y_right_right = (
-            select(swap_xy, -link_length_2*pivot_rear_x_right_right, -link_length_2*pivot_rear_y_right_right)
-            /link_length_3
+            -select(swap_xy, pivot_rear_x_right_right, pivot_rear_y_right_right)*link_length_2/link_length_3
         )
         rod_2_y_right_right = y - centre_2_y_right_right
         type2_arms_aligned_right_right = (

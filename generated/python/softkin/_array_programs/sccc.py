@@ -14,6 +14,7 @@ from softkin._array import (
     Reals,
     Rotation,
     Signs,
+    Truth,
     Turns,
     Vector,
     absolute,
@@ -166,7 +167,7 @@ class ArrayPrograms(Programs):
         angle_a2 = atan2(sin_a2, cos_a2)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
 
-        def elsewhere_near_a2(motor_a1: Real, ref_a1: Real, ref_a2: Real, single_a2: Real) -> Reals:
+        def elsewhere_near_a2(motor_a1: Real, ref_a1: Real, ref_a2: Real, single_a2: Truth) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
@@ -182,7 +183,7 @@ class ArrayPrograms(Programs):
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
 
         def elsewhere_near_a3(
-            motor_a1: Real, motor_a2: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real, single_a3: Real,
+            motor_a1: Real, motor_a2: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real, single_a3: Truth,
         ) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -359,7 +360,7 @@ class ArrayPrograms(Programs):
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
 
         def elsewhere_near_a2_right(
-            motor_a1_left: Real, motor_a1_right: Real, ref_a1: Real, ref_a2: Real, single_a2: Real,
+            motor_a1_left: Real, motor_a1_right: Real, ref_a1: Real, ref_a2: Real, single_a2: Truth,
         ) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -407,7 +408,7 @@ class ArrayPrograms(Programs):
 
         def elsewhere_near_a3_right(
             motor_a1_left: Real, motor_a1_right: Real, motor_a2_left: Real, motor_a2_right: Real, ref_a1: Real,
-            ref_a2: Real, ref_a3: Real, single_a3: Real,
+            ref_a2: Real, ref_a3: Real, single_a3: Truth,
         ) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE

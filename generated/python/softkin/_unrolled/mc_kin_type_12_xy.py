@@ -42,6 +42,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_times_link_length_2 = link_length_1*link_length_2
     link_length_1_times_link_length_3 = link_length_1*link_length_3
     link_length_5_times_shortest_link = 1e-9*link_length_5
+    link_length_2_by_link_length_3 = link_length_2/link_length_3
     constant_part = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
     link_length_5_times_2 = 2.0*link_length_5
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
@@ -107,21 +108,17 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
         cos_a1_right = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
         pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
-        # rod rear
         if swap_xy:
             centre_1_x_left = pivot_upper_y_left
             centre_1_y_left = pivot_upper_x_left
-            span_rear_x = -link_length_3_by_link_length_2*y
-            span_rear_y = -link_length_3_by_link_length_2*x
             centre_1_x_right = pivot_upper_y_right
             centre_1_y_right = pivot_upper_x_right
         else:
             centre_1_x_left = pivot_upper_x_left
             centre_1_y_left = pivot_upper_y_left
-            span_rear_x = -link_length_3_by_link_length_2*x
-            span_rear_y = -link_length_3_by_link_length_2*y
             centre_1_x_right = pivot_upper_x_right
             centre_1_y_right = pivot_upper_y_right
+        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2  # rod rear
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
         along_a2 = (
             (
@@ -130,11 +127,12 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        link_length_2_times_span_rear_y = link_length_2*span_rear_y
+        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2  # rod rear
+        link_length_2_times_minus_span_rear_y = link_length_2*minus_span_rear_y
         across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1_left + link_length_1_times_link_length_3*cos_a1_left
-                - link_length_2_times_span_rear_y
+                link_length_2_times_minus_span_rear_y + link_length_1_times_link_length_2*cos_a1_left
+                + link_length_1_times_link_length_3*cos_a1_left
             )
             /link_length_2
         )
@@ -187,23 +185,19 @@ def unrolled(k: Constants) -> Unrolled:
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_left
             rod_1_y = y - centre_1_y_left
-            part_of_minus_pivot_rear_x = (
+            part_of_pivot_rear_x = (
                 link_length_1*sin_a1_left + link_length_1_times_link_length_3_by_link_length_2*sin_a1_left
             )
-            minus_pivot_rear_x_left = link_length_5*cos_a2_left - part_of_minus_pivot_rear_x  # rod rear
-            part_of_minus_pivot_rear_y = (
+            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear
+            part_of_pivot_rear_y = (
                 link_length_1*cos_a1_left + link_length_1_times_link_length_3_by_link_length_2*cos_a1_left
             )
-            minus_pivot_rear_y_left = -part_of_minus_pivot_rear_y - link_length_5*sin_a2_left  # rod rear
-            centre_2_x_left = (
-                (link_length_2*minus_pivot_rear_y_left if swap_xy else link_length_2*minus_pivot_rear_x_left)
-                /link_length_3
+            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left  # rod rear
+            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3
+            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3
+            type2_arms_aligned_left = (
+                constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
             )
-            centre_2_y_left = (
-                (link_length_2*minus_pivot_rear_x_left if swap_xy else link_length_2*minus_pivot_rear_y_left)
-                /link_length_3
-            )
-            type2_arms_aligned_left = constant_part*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
             refusal_left_left = (
                 0
                 if (axis_a2_left_left >= lowest_a2) and (
@@ -211,17 +205,17 @@ def unrolled(k: Constants) -> Unrolled:
                 ) and (axis_a2_left_left <= highest_a2)
                 else 3
             )
-            minus_pivot_rear_x_right = link_length_5*cos_a2_right - part_of_minus_pivot_rear_x  # rod rear
-            minus_pivot_rear_y_right = -part_of_minus_pivot_rear_y - link_length_5*sin_a2_right  # rod rear
-            centre_2_x_right = (
-                (link_length_2*minus_pivot_rear_y_right if swap_xy else link_length_2*minus_pivot_rear_x_right)
-                /link_length_3
+            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_right  # rod rear
+            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_right  # rod rear
+            minus_centre_2_x_right = (
+                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3
             )
-            centre_2_y_right = (
-                (link_length_2*minus_pivot_rear_x_right if swap_xy else link_length_2*minus_pivot_rear_y_right)
-                /link_length_3
+            minus_centre_2_y_right = (
+                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3
             )
-            type2_arms_aligned_right = constant_part*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
+            type2_arms_aligned_right = (
+                constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
+            )
             refusal_left_right = (
                 0
                 if (axis_a2_left_right >= lowest_a2) and (
@@ -241,8 +235,8 @@ def unrolled(k: Constants) -> Unrolled:
         )
         across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1_right + link_length_1_times_link_length_3*cos_a1_right
-                - link_length_2_times_span_rear_y
+                link_length_2_times_minus_span_rear_y + link_length_1_times_link_length_2*cos_a1_right
+                + link_length_1_times_link_length_3*cos_a1_right
             )
             /link_length_2
         )
@@ -285,23 +279,19 @@ def unrolled(k: Constants) -> Unrolled:
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_right
             rod_1_y = y - centre_1_y_right
-            part_of_minus_pivot_rear_x_left_right = (
+            part_of_pivot_rear_x_left_right = (
                 link_length_1*sin_a1_right + link_length_1_times_link_length_3_by_link_length_2*sin_a1_right
             )
-            minus_pivot_rear_x_left = link_length_5*cos_a2_left - part_of_minus_pivot_rear_x_left_right  # rod rear
-            part_of_minus_pivot_rear_y_left_right = (
+            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_left  # rod rear
+            part_of_pivot_rear_y_left_right = (
                 link_length_1*cos_a1_right + link_length_1_times_link_length_3_by_link_length_2*cos_a1_right
             )
-            minus_pivot_rear_y_left = -part_of_minus_pivot_rear_y_left_right - link_length_5*sin_a2_left  # rod rear
-            centre_2_x_left = (
-                (link_length_2*minus_pivot_rear_y_left if swap_xy else link_length_2*minus_pivot_rear_x_left)
-                /link_length_3
+            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left  # rod rear
+            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3
+            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3
+            type2_arms_aligned_left = (
+                constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
             )
-            centre_2_y_left = (
-                (link_length_2*minus_pivot_rear_x_left if swap_xy else link_length_2*minus_pivot_rear_y_left)
-                /link_length_3
-            )
-            type2_arms_aligned_left = constant_part*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
             refusal_right_left = (
                 0
                 if (axis_a2_right_left >= lowest_a2) and (
@@ -309,17 +299,17 @@ def unrolled(k: Constants) -> Unrolled:
                 ) and (axis_a2_right_left <= highest_a2)
                 else 3
             )
-            minus_pivot_rear_x_right = link_length_5*cos_a2_right - part_of_minus_pivot_rear_x_left_right  # rod rear
-            minus_pivot_rear_y_right = -part_of_minus_pivot_rear_y_left_right - link_length_5*sin_a2_right  # rod rear
-            centre_2_x_right = (
-                (link_length_2*minus_pivot_rear_y_right if swap_xy else link_length_2*minus_pivot_rear_x_right)
-                /link_length_3
+            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right  # rod rear
+            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right  # rod rear
+            minus_centre_2_x_right = (
+                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3
             )
-            centre_2_y_right = (
-                (link_length_2*minus_pivot_rear_x_right if swap_xy else link_length_2*minus_pivot_rear_y_right)
-                /link_length_3
+            minus_centre_2_y_right = (
+                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3
             )
-            type2_arms_aligned_right = constant_part*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
+            type2_arms_aligned_right = (
+                constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
+            )
             refusal_right_right = (
                 0
                 if (axis_a2_right_right >= lowest_a2) and (
@@ -387,21 +377,17 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
         cos_a1_right = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
         pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
-        # rod rear
         if swap_xy:
             centre_1_x_left = pivot_upper_y_left
             centre_1_y_left = pivot_upper_x_left
-            span_rear_x = -link_length_3_by_link_length_2*y
-            span_rear_y = -link_length_3_by_link_length_2*x
             centre_1_x_right = pivot_upper_y_right
             centre_1_y_right = pivot_upper_x_right
         else:
             centre_1_x_left = pivot_upper_x_left
             centre_1_y_left = pivot_upper_y_left
-            span_rear_x = -link_length_3_by_link_length_2*x
-            span_rear_y = -link_length_3_by_link_length_2*y
             centre_1_x_right = pivot_upper_x_right
             centre_1_y_right = pivot_upper_y_right
+        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2  # rod rear
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
         along_a2 = (
             (
@@ -410,11 +396,12 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        link_length_2_times_span_rear_y = link_length_2*span_rear_y
+        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2  # rod rear
+        link_length_2_times_minus_span_rear_y = link_length_2*minus_span_rear_y
         across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1_left + link_length_1_times_link_length_3*cos_a1_left
-                - link_length_2_times_span_rear_y
+                link_length_2_times_minus_span_rear_y + link_length_1_times_link_length_2*cos_a1_left
+                + link_length_1_times_link_length_3*cos_a1_left
             )
             /link_length_2
         )
@@ -456,35 +443,31 @@ def unrolled(k: Constants) -> Unrolled:
         if effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_left
             rod_1_y = y - centre_1_y_left
-            part_of_minus_pivot_rear_x = (
+            part_of_pivot_rear_x = (
                 link_length_1*sin_a1_left + link_length_1_times_link_length_3_by_link_length_2*sin_a1_left
             )
-            minus_pivot_rear_x_left = link_length_5*cos_a2_left_left - part_of_minus_pivot_rear_x  # rod rear
-            part_of_minus_pivot_rear_y = (
+            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left_left  # rod rear
+            part_of_pivot_rear_y = (
                 link_length_1*cos_a1_left + link_length_1_times_link_length_3_by_link_length_2*cos_a1_left
             )
-            minus_pivot_rear_y_left = -part_of_minus_pivot_rear_y - link_length_5*sin_a2_left_left  # rod rear
-            centre_2_x_left = (
-                (link_length_2*minus_pivot_rear_y_left if swap_xy else link_length_2*minus_pivot_rear_x_left)
-                /link_length_3
+            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left_left  # rod rear
+            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3
+            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3
+            type2_arms_aligned_left = (
+                constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
             )
-            centre_2_y_left = (
-                (link_length_2*minus_pivot_rear_x_left if swap_xy else link_length_2*minus_pivot_rear_y_left)
-                /link_length_3
-            )
-            type2_arms_aligned_left = constant_part*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
             refusal_left_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            minus_pivot_rear_x_right = link_length_5*cos_a2_left_right - part_of_minus_pivot_rear_x  # rod rear
-            minus_pivot_rear_y_right = -part_of_minus_pivot_rear_y - link_length_5*sin_a2_left_right  # rod rear
-            centre_2_x_right = (
-                (link_length_2*minus_pivot_rear_y_right if swap_xy else link_length_2*minus_pivot_rear_x_right)
-                /link_length_3
+            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_left_right  # rod rear
+            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_left_right  # rod rear
+            minus_centre_2_x_right = (
+                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3
             )
-            centre_2_y_right = (
-                (link_length_2*minus_pivot_rear_x_right if swap_xy else link_length_2*minus_pivot_rear_y_right)
-                /link_length_3
+            minus_centre_2_y_right = (
+                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3
             )
-            type2_arms_aligned_right = constant_part*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
+            type2_arms_aligned_right = (
+                constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
+            )
             refusal_left_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
         else:
             refusal_left_left = 3
@@ -499,8 +482,8 @@ def unrolled(k: Constants) -> Unrolled:
         )
         across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1_right + link_length_1_times_link_length_3*cos_a1_right
-                - link_length_2_times_span_rear_y
+                link_length_2_times_minus_span_rear_y + link_length_1_times_link_length_2*cos_a1_right
+                + link_length_1_times_link_length_3*cos_a1_right
             )
             /link_length_2
         )
@@ -534,37 +517,31 @@ def unrolled(k: Constants) -> Unrolled:
         if effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_right
             rod_1_y = y - centre_1_y_right
-            part_of_minus_pivot_rear_x_left_right = (
+            part_of_pivot_rear_x_left_right = (
                 link_length_1*sin_a1_right + link_length_1_times_link_length_3_by_link_length_2*sin_a1_right
             )
-            minus_pivot_rear_x_left = link_length_5*cos_a2_right_left - part_of_minus_pivot_rear_x_left_right  # rod rear
-            part_of_minus_pivot_rear_y_left_right = (
+            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_left  # rod rear
+            part_of_pivot_rear_y_left_right = (
                 link_length_1*cos_a1_right + link_length_1_times_link_length_3_by_link_length_2*cos_a1_right
             )
-            minus_pivot_rear_y_left = -part_of_minus_pivot_rear_y_left_right - link_length_5*sin_a2_right_left  # rod rear
-            centre_2_x_left = (
-                (link_length_2*minus_pivot_rear_y_left if swap_xy else link_length_2*minus_pivot_rear_x_left)
-                /link_length_3
+            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_left  # rod rear
+            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3
+            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3
+            type2_arms_aligned_left = (
+                constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
             )
-            centre_2_y_left = (
-                (link_length_2*minus_pivot_rear_x_left if swap_xy else link_length_2*minus_pivot_rear_y_left)
-                /link_length_3
-            )
-            type2_arms_aligned_left = constant_part*((y - centre_2_y_left)*rod_1_x - (x - centre_2_x_left)*rod_1_y)
             refusal_right_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            # rod rear
-            minus_pivot_rear_x_right = link_length_5*cos_a2_right_right - part_of_minus_pivot_rear_x_left_right
-            # rod rear
-            minus_pivot_rear_y_right = -part_of_minus_pivot_rear_y_left_right - link_length_5*sin_a2_right_right
-            centre_2_x_right = (
-                (link_length_2*minus_pivot_rear_y_right if swap_xy else link_length_2*minus_pivot_rear_x_right)
-                /link_length_3
+            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_right  # rod rear
+            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_right  # rod rear
+            minus_centre_2_x_right = (
+                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3
             )
-            centre_2_y_right = (
-                (link_length_2*minus_pivot_rear_x_right if swap_xy else link_length_2*minus_pivot_rear_y_right)
-                /link_length_3
+            minus_centre_2_y_right = (
+                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3
             )
-            type2_arms_aligned_right = constant_part*((y - centre_2_y_right)*rod_1_x - (x - centre_2_x_right)*rod_1_y)
+            type2_arms_aligned_right = (
+                constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
+            )
             refusal_right_right = 0 if type2_arms_aligned_right >= min_type2_margin else 3
         else:
             refusal_right_left = 3
@@ -631,13 +608,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-        # rod rear
-        if swap_xy:
-            span_rear_x = -link_length_3_by_link_length_2*y
-            span_rear_y = -link_length_3_by_link_length_2*x
-        else:
-            span_rear_x = -link_length_3_by_link_length_2*x
-            span_rear_y = -link_length_3_by_link_length_2*y
+        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2  # rod rear
         along_a2 = (
             (
                 link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1
@@ -646,10 +617,11 @@ def unrolled(k: Constants) -> Unrolled:
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
+        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2  # rod rear
         across_a2 = (
             (
                 link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
-                - link_length_2*span_rear_y
+                + link_length_2*minus_span_rear_y
             )
             /link_length_2
         )
@@ -685,17 +657,20 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear
-        minus_pivot_rear_x = (
-            link_length_5*cos_a2 - link_length_1*sin_a1 - link_length_1_times_link_length_3_by_link_length_2*sin_a1
+        pivot_rear_x = (
+            link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1 - link_length_5*cos_a2
         )
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
-        minus_pivot_rear_y = (
-            -link_length_1*cos_a1 - link_length_1_times_link_length_3_by_link_length_2*cos_a1 - link_length_5*sin_a2
+        pivot_rear_y = (
+            link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1 + link_length_5*sin_a2
         )
-        centre_2_x = (link_length_2*minus_pivot_rear_y if swap_xy else link_length_2*minus_pivot_rear_x)/link_length_3
-        centre_2_y = (link_length_2*minus_pivot_rear_x if swap_xy else link_length_2*minus_pivot_rear_y)/link_length_3
-        type2_arms_aligned = ((x - centre_1_x)*(y - centre_2_y) - (y - centre_1_y)*(x - centre_2_x))*constant_part
+        minus_centre_2_x = (pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
+        minus_centre_2_y = (pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
+        type2_arms_aligned = (
+            ((x - centre_1_x)*(minus_centre_2_y + y) - (y - centre_1_y)*(minus_centre_2_x + x))
+            *constant_part
+        )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

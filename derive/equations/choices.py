@@ -2,6 +2,7 @@
 
     x (1 - swap) + y swap     →  select(swap, y, x)
     z + h (1 - 2 down)        →  z + h select(down, -1, 1)
+    a x (1 - swap) + a y swap →  a select(swap, y, x)
     direction a               →  to_real(direction) a          where the machine is set up; elsewhere it is a number by then
 """
 
@@ -75,5 +76,9 @@ def _asked(value: Relational, name: str) -> sp.Basic:
 
 
 def _choice(value: sp.Expr, name: str) -> sp.Expr:
-    """The value where the flag is set, and where it is not."""
-    return Select(flag(name), *(value.xreplace({real(name): sp.Integer(number)}) for number in (1, 0)))
+    """The value where the flag is set, and where it is not; factors that both have stand before the choice."""
+    holds, fails = (value.xreplace({real(name): sp.Integer(number)}) for number in (1, 0))
+    if holds == 0 or fails == 0:
+        return Select(flag(name), holds, fails)
+    factors = sp.Mul(*(f for f in sp.Mul.make_args(holds) if f in sp.Mul.make_args(fails)))
+    return factors * Select(flag(name), holds / factors, fails / factors)

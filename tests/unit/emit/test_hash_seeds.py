@@ -1,0 +1,31 @@
+"""The text of a mechanism is the same whatever Python's hash seed is: no set decides an order."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+_TEXT = """
+from derive.description.catalogue import MECHANISMS, load
+from derive.kinematics.build import build
+from derive.pipeline import languages
+kin = build(load(MECHANISMS / "mc_kin_type_12_xy.py"))
+for language in languages():
+    for name, text in sorted(language.render([kin]).items()):
+        print(name, text)
+"""
+
+
+def _text(seed: str) -> str:
+    environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", _TEXT], env=environment, cwd=ROOT, capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+def test_the_text_does_not_depend_on_the_hash_seed() -> None:
+    first = _text("0")
+    assert len(first) > 100_000 and "spanUpperX" in first
+    assert _text("90210") == first
