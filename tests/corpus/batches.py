@@ -32,15 +32,15 @@ def _forward(one: Robot, rows: list[Row]) -> Iterator[str]:
     for i, (question, old) in enumerate(rows):
         place = f"forward_batch of {one.made!r}: asked {question}"
         if statuses[i] != old.get("status", 0):
-            yield f"{place}: status {old.get('status', 0)} was {statuses[i]}"
+            yield f"{place}: status {statuses[i]} was {old.get('status', 0)}"
         elif "position" in old:
             allowed = FRAME / max(old["margin"], SINGULAR)
             if not np.allclose(positions[i], old["position"], rtol=allowed, atol=allowed * one.reach):
-                yield f"{place}: position {old['position']} was {positions[i]}"
+                yield f"{place}: position {positions[i]} was {old['position']}"
             if not np.allclose(rotations[i], old["rotation"], rtol=0.0, atol=allowed):
-                yield f"{place}: rotation {old['rotation']} was {rotations[i]}"
+                yield f"{place}: rotation {rotations[i]} was {old['rotation']}"
             if old["margin"] > 1e-9 and configurations[i].tolist() != old["configuration"]:
-                yield f"{place}: configuration {old['configuration']} was {configurations[i]}"
+                yield f"{place}: configuration {configurations[i]} was {old['configuration']}"
 
 
 def _slots(one: Robot, rows: list[Row]) -> Iterator[str]:
@@ -71,7 +71,7 @@ def _named(one: Robot, rows: list[Row]) -> Iterator[str]:
 
 def _one(one: Robot, place: str, old: Answer, axes: Any, status: Any) -> Iterator[str]:
     if status != old["status"]:
-        yield f"{place}: status {old['status']} was {status}"
+        yield f"{place}: status {status} was {old['status']}"
     elif "axes" in old:
         yield from axes_differ(one, place, old["axes"], axes.tolist(), old["margin"])
 

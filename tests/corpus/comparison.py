@@ -125,7 +125,7 @@ def _reals(one: Robot, place: str, old: Any, new: Any, margin: float = 1.0) -> I
                 yield from _reals(one, place, a, b, margin)
     elif _are_reals(old, new):
         if abs(old - new) > AXES * max(1.0, abs(old)) / margin:
-            yield f"{place}: {old!r} was {new!r}"
+            yield f"{place}: {new!r} was {old!r}"
     else:
         yield from _exact(place, old, new)
 
@@ -143,4 +143,4 @@ def _are_reals(*values: Any) -> bool:
 
 def _exact(place: str, old: Any, new: Any) -> Iterator[str]:
     if repr(old) != repr(new):
-        yield f"{place}: {old} was {new}"
+        yield f"{place}: {new} was {old}"

@@ -11,7 +11,7 @@ compared with: nothing can be aimed then.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import sympy as sp
@@ -82,6 +82,8 @@ class _Amplitude:
     """h - e and h + e, where they are known better than by what they say."""
     is_signed: bool = False
     """Whether h may be negative."""
+    told: sp.Expr | None = None
+    """(h - e)(h + e) in lengths, where the factors do not say it: how much is missing is told by it."""
 
 
 def _amplitude(
@@ -101,19 +103,19 @@ def _amplitude(
     along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
     effective = naming.length(f"effective_{angle.name}", along, across, note="effective length that the angle turns")
     if problem.is_never_zero(along**2 + across**2):
-        right, factors = _law_of_cosines(problem, equation, naming, angle, e, (common, square, effective))
+        right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, effective))
         length = common * effective
-        return _Amplitude(naming, length, (), along / effective, across / effective, right, slope, length, factors)
+        return _Amplitude(naming, length, (), along / effective, across / effective, right, slope, length, factors, told=told)
     aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
     divisor = real(f"divisor_{angle.name}")
     guard = (
         Require(aimable, Status.UNREACHABLE, reason=about_joint(angle, Why.TOO_SHORT)),
         Let(divisor, Select(aimable, effective, sp.Integer(1))),
     )
-    right, factors = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
+    right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
     return _Amplitude(
         naming, common * divisor, guard, along / divisor, across / divisor, right, slope,
-        equation.scales.get(angle, common * problem.scale), factors,
+        equation.scales.get(angle, common * problem.scale), factors, told=told,
     )
 
 
@@ -124,35 +126,64 @@ def _law_of_cosines(
     angle: sp.Symbol,
     right: sp.Expr,
     turned: tuple[sp.Expr, sp.Expr, sp.Expr],
-) -> tuple[sp.Expr, tuple[sp.Expr, sp.Expr] | None]:
-    """e, h - e and h + e, where these are M - (D - k)^2 and (D + k)^2 - M or the reverse: h = 2 k D.
+) -> tuple[sp.Expr, tuple[sp.Expr, sp.Expr] | None, sp.Expr | None]:
+    """e, h - e and h + e, and their product in lengths if those are not.
+
+    Where a triangle is seen, these are M - (D - k)^2 and (D + k)^2 - M or the reverse: h = 2 k D.
 
     D is a multiple of the effective length, k the arm that turns, and M the square of the third side of their triangle.
     Written out, the terms of D^2 and of M are far larger than what they add up to where the lengths of a machine differ.
     """
+    triangle = _triangle(problem, right, turned)
+    if triangle is not None and not _is_square(triangle.third):
+        third = naming.product(_positive(triangle.third), f"third_square_{angle.name}", "square of the third side")
+        triangle = replace(triangle, third=third)
+    seen = from_origin(problem, equation, right, turned[0].as_coeff_Mul()[1])
+    if seen is not None:
+        named = naming.product(seen, f"scaled_cosine_{angle.name}", "cosine times the scale, seen from the origin")
+        return named, None, None if triangle is None else sp.Mul(*triangle.factors)
+    return (right, None, None) if triangle is None else (triangle.right, triangle.factors, None)
+
+
+@dataclass(frozen=True)
+class _Triangle:
+    """Distance and side, whose angle is wanted, and the square of the third side."""
+
+    distance: sp.Expr
+    side: sp.Expr
+    third: sp.Expr
+    sense: int
+    """+1 where the cosine of the angle grows with distance and side, -1 where it falls."""
+
+    @property
+    def right(self) -> sp.Expr:
+        """The cosine, times twice distance and side."""
+        return sp.expand(self.sense * (self.distance**2 + self.side**2 - self.third))
+
+    @property
+    def factors(self) -> tuple[sp.Expr, sp.Expr]:
+        """1 - cosine and 1 + cosine, times the same."""
+        less, more = self.third - (self.distance - self.side) ** 2, (self.distance + self.side) ** 2 - self.third
+        if _is_square(self.third):
+            less, more = _product(less), _product(more)
+        return (less, more) if self.sense > 0 else (more, less)
+
+
+def _triangle(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, sp.Expr]) -> _Triangle | None:
+    """The triangle that a right-hand side is about, where the square of its third side is a product, or is shorter."""
     common, square, effective = turned
     number, arm = common.as_coeff_Mul()
-    seen = from_origin(problem, equation, right, arm)
-    if seen is not None:
-        return naming.product(seen, f"scaled_cosine_{angle.name}", "cosine times the scale, seen from the origin"), None
     whole = reduce_units(right, problem.units, problem.signs)
     share = whole.as_coefficients_dict()[sp.expand(arm**2)]
     ratio = number / (2 * sp.sqrt(abs(share)))
     if share == 0 or not ratio.is_rational:
-        return right, None
+        return None
     sense, distance, side = sp.sign(share), ratio * effective, sp.sqrt(abs(share)) * arm
     third = reduce_units(ratio**2 * square + side**2 - sense * whole, problem.units, problem.signs)
     factored = _factored(_with_units(problem, third))
     if not (factored.is_Mul or factored.is_Pow) and len(sp.Add.make_args(third)) >= len(sp.Add.make_args(whole)):
-        return right, None
-    third = factored
-    if not _is_square(third):
-        third = naming.product(_positive(third), f"third_square_{angle.name}", "square of the third side")
-    less, more = third - (distance - side) ** 2, (distance + side) ** 2 - third
-    if _is_square(third):
-        less, more = _product(less), _product(more)
-    right = sp.expand(sense * (distance**2 + side**2 - third))
-    return right, (less, more) if sense > 0 else (more, less)
+        return None
+    return _Triangle(distance, side, factored, sense)
 
 
 def _with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
@@ -193,6 +224,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     length, right = amplitude.length, amplitude.right
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (_product(length - right), _product(length + right))
+    told = less * more if amplitude.told is None else amplitude.told
     known = (*amplitude.naming.lets, *(s for s in amplitude.guard if isinstance(s, Let)))
     statements: list[Statement] = [
         *amplitude.naming.lets,
@@ -201,7 +233,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
         Let(less_cos, less, "1 - cosine, times the scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
         Let(square, less_cos * plus_cos, "the square of sine times scale"),
-        Require(sp.Ge(square, -BOUNDARY * scale**2), Status.UNREACHABLE, reason=out_of_reach(angle, less * more, known)),
+        Require(sp.Ge(square, -BOUNDARY * scale**2), Status.UNREACHABLE, reason=out_of_reach(angle, told, known)),
         Let(twice, less_cos + plus_cos, "twice the scale, with the rounding of its parts"),
         Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
         Let(cos_name, (plus_cos - less_cos) / divisor),

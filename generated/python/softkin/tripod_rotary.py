@@ -597,7 +597,21 @@ class TripodRotary(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return Diagnosis(Status.UNREACHABLE, "A1: out of reach", 0.0)
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
+                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
+                    - 0.5*abs(
+                        (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
+                    )
+                    - (arm_length_2 + y)*(arm_length_2 - y)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
         span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
@@ -620,7 +634,29 @@ class TripodRotary(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                        + (
+                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                    - 0.5*abs(
+                        (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                        + (
+                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                    )
+                    - (
+                        arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x
+                    )*(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
@@ -641,7 +677,29 @@ class TripodRotary(OffsetKinematics):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-            return Diagnosis(Status.UNREACHABLE, "A3: out of reach", 0.0)
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
+                        - (
+                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
+                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
+                    - 0.5*abs(
+                        (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
+                        - (
+                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    )
+                    - (
+                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
@@ -1111,7 +1169,23 @@ class TripodRotary(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return Diagnosis(Status.UNREACHABLE, "A1: out of reach", 0.0)
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
+                        - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
+                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
+                    - 0.5*abs(
+                        (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
+                        - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
+                    )
+                    - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = 0.5*fixed_length_1 + flange_x - 0.5*arm_1_radius  # rod 2
         span_2_y = flange_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
@@ -1134,7 +1208,29 @@ class TripodRotary(OffsetKinematics):
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                        + (
+                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                    - 0.5*abs(
+                        (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                        + (
+                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                    )
+                    - (
+                        arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x
+                    )*(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_y = flange_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
@@ -1155,7 +1251,29 @@ class TripodRotary(OffsetKinematics):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-            return Diagnosis(Status.UNREACHABLE, "A3: out of reach", 0.0)
+            missing = abs(
+                arm_length_2
+                - root(
+                    0.5*abs(
+                        (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
+                        - (
+                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    )
+                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
+                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
+                    - 0.5*abs(
+                        (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
+                        - (
+                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    )
+                    - (
+                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                )
+            )
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
