@@ -19,8 +19,8 @@ settings.register_profile("softkin", deadline=None, derandomize=True)
 settings.load_profile("softkin")
 
 ROOT = Path(__file__).parent
-ALL_OF_THEM_QUICK = ("unit", "harness")
-"""The folders whose tests are quick whatever they are about, but for those that are marked as slow."""
+ALL_OF_THEM_QUICK = (("unit",), ("harness",))
+"""The folders whose tests are quick where they are about no mechanism of the catalogue, but for those that are slow."""
 OF_ONE_MECHANISM = {"hexapod": "Kin_Hexapod", "search": "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"}
 """Folders of tests about one mechanism, which their parameters do not name."""
 PATHS = {
@@ -41,11 +41,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         folders = item.path.relative_to(ROOT).parts[:-1]
         names = mechanisms_of(item, folders)
-        is_chosen = (set(names) <= PATHS.keys() and names) or folders[:1] in [(f,) for f in ALL_OF_THEM_QUICK]
-        if is_chosen and item.get_closest_marker("slow") is None:
+        is_quick = set(names) <= PATHS.keys() if names else folders[:1] in ALL_OF_THEM_QUICK
+        if is_quick and item.get_closest_marker("slow") is None:
             item.add_marker("quick")
         if is_shared_out:
-            item.add_marker(pytest.mark.xdist_group(names[0] if names else str(item.path.relative_to(ROOT))))
+            by_file = not names or not folders or folders[0] == "unit"
+            item.add_marker(pytest.mark.xdist_group(str(item.path.relative_to(ROOT)) if by_file else names[0]))
 
 
 def mechanisms_of(item: pytest.Item, folders: tuple[str, ...]) -> list[str]:

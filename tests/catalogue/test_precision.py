@@ -18,11 +18,10 @@ from softkin import KinematicsError
 
 from derive.description.mechanism import Joint, Mechanism, Role
 from derive.ir.program import Status
-from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from tests.catalogue.machines import LENGTHS
 from tests.catalogue.many_digits import DIGITS, Number, evaluate_exactly, run_exactly
-from tests.mechanisms import catalogue
+from tests.mechanisms import kinematics_of, named
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 
@@ -47,8 +46,7 @@ Numbers = Mapping[str, Number]
 
 @cache
 def built(name: str) -> Kinematics:
-    (mechanism,) = (m for _, m in catalogue() if m.name == name)
-    return build(mechanism)
+    return kinematics_of(named(name))
 
 
 def parameters_of(mechanism: Mechanism, rng: np.random.Generator) -> Iterator[dict[str, float]]:

@@ -156,12 +156,16 @@ def quotient(left: int, right: int) -> int:
     """Integer division cuts towards zero."""
     if right == 0:
         raise StFault("division by zero")
+    if left >= 0 and right > 0:
+        return left // right
     found = abs(left) // abs(right)
     return found if (left < 0) == (right < 0) else -found
 
 
 def remainder(left: int, right: int) -> int:
     """MOD has the sign of the dividend."""
+    if left >= 0 and right > 0:
+        return left % right
     return left - right * quotient(left, right)
 
 

@@ -9,9 +9,8 @@ import numpy as np
 
 from derive.description.mechanism import Mechanism
 from derive.drawing.drawing import Drawing, drawing_of
-from derive.kinematics.build import build
 from derive.witness.closure import Closure, closure_of
-from tests.mechanisms import catalogue
+from tests.mechanisms import catalogue, kinematics_of
 
 CATALOGUE = {mechanism.name: mechanism for _, mechanism in catalogue()}
 KINDS = (
@@ -64,4 +63,4 @@ class Drawn:
 def drawn(name: str) -> Drawn:
     """The drawing of a mechanism of the catalogue."""
     mechanism = CATALOGUE[name]
-    return Drawn(mechanism, drawing_of(build(mechanism)), closure_of(mechanism))
+    return Drawn(mechanism, drawing_of(kinematics_of(mechanism)), closure_of(mechanism))

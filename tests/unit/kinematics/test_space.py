@@ -172,7 +172,11 @@ ARMS: dict[Callable[[], Mechanism], int] = {
 """Every arm, and how many solutions a pose has."""
 
 
-@pytest.mark.parametrize("make", ARMS, ids=lambda f: f.__name__)
+QUICK = (telescope, position_alone)
+CASES = [pytest.param(arm, marks=() if arm in QUICK else pytest.mark.slow) for arm in ARMS]
+
+
+@pytest.mark.parametrize("make", CASES, ids=lambda f: f.__name__)
 def test_an_arm_in_space(make: Callable[[], Mechanism]) -> None:
     kinematics = build(make())
     evidence = witness(kinematics)

@@ -29,7 +29,6 @@ from derive.ir.symbols import (
     real,
 )
 from derive.ir.verify import BrokenProgram, verify
-from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.optimize.unroll import (
     REFUSAL,
@@ -42,6 +41,7 @@ from derive.optimize.unroll import (
     with_limits,
 )
 from derive.optimize.without_periods import any_turn
+from tests.mechanisms import kinematics_of
 
 A, B, C, X, Y = (real(n) for n in "abcxy")
 ELBOW, WRIST = Sign(real("sigma_elbow"), ("right", "left")), Sign(real("sigma_wrist"), ("down", "up"))
@@ -170,7 +170,7 @@ def check_equal(looped: Program, unrolled: Program, signs: tuple[Sign, ...], val
 
 @cache
 def kinematics(name: str) -> Kinematics:
-    return build(load(MECHANISMS / f"{name}.py"))
+    return kinematics_of(load(MECHANISMS / f"{name}.py"))
 
 
 @pytest.mark.parametrize("name", SHAPES)
