@@ -47,6 +47,8 @@ class Built:
     """What every language writes of it, by the name of the language."""
     pictures: Mapping[str, bytes]
     """Path below the output folder → bytes. They are made where the mechanism is derived: drawing takes as long."""
+    evidence: Evidence | None = None
+    """What the witness found; None where it was kept from an earlier run."""
 
     def as_plain(self) -> dict[str, Any]:
         """What JSON can hold."""
@@ -111,7 +113,7 @@ def derive_one(mechanism: Mechanism, profile: str | None = None) -> Built:
     whole = replace(derived, evidence=evidence, self_test=self_test(derived))
     pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in pictures_of(derived).items()}
     parts = {language.name: language.part(whole) for language in languages(profile)}
-    return Built(_derived(whole), _measured(evidence), time.perf_counter() - start, parts, pictures)
+    return Built(_derived(whole), _measured(evidence), time.perf_counter() - start, parts, pictures, evidence)
 
 
 def languages(profile: str | None = None) -> tuple[Language, ...]:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import pickle
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from unittest.mock import patch
 
 from derive import __main__ as command
-from derive.description.catalogue import Entry
 from derive.kinematics.kinematics import Evidence
-from derive.pipeline import Built
+from derive.pipeline import Built, Work
 
 
 def generate(output: str, evidence: str) -> int:
@@ -19,13 +18,14 @@ def generate(output: str, evidence: str) -> int:
     found: dict[str, Evidence] = {}
     derive_all = command.derive_all
 
-    def witnessed(entries: Sequence[Entry]) -> Iterator[Built]:
-        for built in derive_all(entries):
-            found[built.kinematics.mechanism.name] = built.evidence
+    def witnessed(work: Work, profile: str | None) -> Iterator[Built]:
+        for (_, mechanism), built in zip(work.entries, derive_all(work, profile), strict=True):
+            assert built.evidence is not None, "the cache was read"
+            found[mechanism.name] = built.evidence
             yield built
 
     with patch.object(command, "derive_all", witnessed):
-        status = command.main(["generate", "--output", output])
+        status = command.main(["generate", "--fresh", "--output", output])
     Path(evidence).write_bytes(pickle.dumps(found))
     return status
 

@@ -21,7 +21,7 @@ from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from tests.catalogue.machines import LENGTHS
 from tests.catalogue.many_digits import DIGITS, Number, evaluate_exactly, run_exactly
-from tests.mechanisms import kinematics_of, named
+from tests.mechanisms import catalogue, kinematics_of, named
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 

@@ -1,4 +1,5 @@
-"""The emitted Structured Text of the serial machines, executed: every method of every unit against its Python twin.
+"""The emitted Structured Text: its form, its contract, and its answers, every method of every unit against its Python twin.
 
-Closed loops are executed in `tests/text/loops`.
+Units of serial machines stand here, those of closed loops in `loops`, orientation kinematics in `coupling`, the plate that moves
+with its whole pose in `hexapod`, the self-test for a controller in `selftest`.
 """

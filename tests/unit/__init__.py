@@ -1,1 +1,1 @@
-"""The derivation, tested piece by piece and on mechanisms that it was not written for."""
+"""A folder for each folder of the compiler, tested piece by piece and on mechanisms that it was not written for."""
