@@ -12,18 +12,24 @@ from tests.text import values
 from tests.text.closeness import asked, assert_same
 from tests.text.comparisons import padded
 from tests.text.controller import BAD_INPUT
-from tests.text.twins import MECHANISMS, Twins, twins_of
+from tests.text.pairs import POSITION_KINEMATICS, Pair, pairs_of
 
-CONFIGURABLE = [m for m in MECHANISMS if m.branches or m.period_joints]
+CONFIGURABLE = [m for m in POSITION_KINEMATICS if m.branches or m.period_joints]
 PERIODS = (0, 1, 2, 127, -1, -2, -127)
 NO_PERIODS = (128, -128, 300, 32767, -32768)
 """Turns that a byte cannot hold."""
 
 
 @pytest.fixture(params=CONFIGURABLE, ids=lambda m: m.name)
-def one(request: pytest.FixtureRequest) -> Twins:
+def one(request: pytest.FixtureRequest) -> Pair:
     """A machine that has configurations."""
-    return twins_of(request.param)[1]
+    return pairs_of(request.param)[1]
+
+
+def test_who_has_them(pairs: tuple[Pair, ...]) -> None:
+    """A machine with one solution has no configuration, and no such blocks."""
+    has_blocks = f"{pairs[0].mechanism.block_name}_Config" in pairs[0].library.objects
+    assert has_blocks == (pairs[0].mechanism in CONFIGURABLE) == bool(pairs[0].robot.CONFIGURATION)
 
 
 def words(name: str) -> str:
@@ -40,7 +46,7 @@ def inputs(mechanism: Mechanism, branches: tuple[int, ...], periods: tuple[int, 
     return given | {f"iPeriod{words(j.key)}": n for j, n in zip(mechanism.period_joints, periods, strict=True)}
 
 
-def outputs(one: Twins, data: tuple[int, ...]) -> dict[str, Any]:
+def outputs(one: Pair, data: tuple[int, ...]) -> dict[str, Any]:
     """What the reading block shows of configuration bytes."""
     block = one.library.new(one.mechanism.block_name + "_ReadConfig")
     block(Config=values.configuration(one.library, data))
@@ -49,14 +55,14 @@ def outputs(one: Twins, data: tuple[int, ...]) -> dict[str, Any]:
     return {name: getattr(block, name) for name in names}
 
 
-def configured(one: Twins, given: dict[str, Any]) -> tuple[int, ...]:
+def configured(one: Pair, given: dict[str, Any]) -> tuple[int, ...]:
     """All bytes that the setting block writes."""
     block = one.library.new(one.mechanism.block_name + "_Config")
     block(**given)
     return tuple(block.Config.abyData)
 
 
-def test_what_is_set_is_read(one: Twins) -> None:
+def test_what_is_set_is_read(one: Pair) -> None:
     counts = one.robot.BRANCHES, len(one.robot.PERIOD_AXES)
     for branches in product((0, 1, 2), repeat=counts[0]):
         for turn in PERIODS:
@@ -68,18 +74,18 @@ def test_what_is_set_is_read(one: Twins) -> None:
             assert outputs(one, data) == given | singular
 
 
-def test_without_inputs_it_is_the_default(one: Twins) -> None:
+def test_without_inputs_it_is_the_default(one: Pair) -> None:
     assert configured(one, {}) == padded(one.robot.DEFAULT_CONFIGURATION)
 
 
-def test_a_turn_that_a_byte_cannot_hold_is_automatic(one: Twins) -> None:
+def test_a_turn_that_a_byte_cannot_hold_is_automatic(one: Pair) -> None:
     size = len(one.robot.PERIOD_AXES)
     for turn in NO_PERIODS:
         given = inputs(one.mechanism, (1,) * one.robot.BRANCHES, (turn,) * size)
         assert configured(one, given) == padded((1,) * one.robot.BRANCHES + (0,) * size)
 
 
-def test_every_byte_can_be_read(one: Twins) -> None:
+def test_every_byte_can_be_read(one: Pair) -> None:
     branches, periods = one.robot.BRANCHES, len(one.robot.PERIOD_AXES)
     for byte in range(256):
         found = outputs(one, (byte,) * (branches + periods))
@@ -91,7 +97,7 @@ def test_every_byte_can_be_read(one: Twins) -> None:
         assert all(found[f"iPeriod{words(j.key)}"] == number for j in one.mechanism.period_joints)
 
 
-def test_what_is_set_drives_inverse_kinematics(one: Twins) -> None:
+def test_what_is_set_drives_inverse_kinematics(one: Pair) -> None:
     """Every choice of the setting block, given to CartesianToAxes as it is."""
     found = set()
     choices = product(product((0, 1, 2), repeat=one.robot.BRANCHES), (0, 1, 2, -1))
@@ -106,7 +112,7 @@ def test_what_is_set_drives_inverse_kinematics(one: Twins) -> None:
     assert len(found) > 3
 
 
-def test_a_branch_byte_that_means_nothing_is_refused(one: Twins) -> None:
+def test_a_branch_byte_that_means_nothing_is_refused(one: Pair) -> None:
     sample = one.regular[0]
     (position, rotation), own = one.robot.forward(sample.axes)
     for index, byte in product(range(one.robot.BRANCHES), range(4, 256)):
@@ -114,7 +120,7 @@ def test_a_branch_byte_that_means_nothing_is_refused(one: Twins) -> None:
         assert one.controller.inverse(position, rotation, data, sample.axes) == (BAD_INPUT, None)
 
 
-def test_connectible_is_an_equivalence_of_branch_bytes(one: Twins) -> None:
+def test_connectible_is_an_equivalence_of_branch_bytes(one: Pair) -> None:
     """Over all branch bytes 0 to 3; the period bytes differ everywhere."""
     size, branches = len(one.robot.CONFIGURATION), one.robot.BRANCHES
     all_bytes = list(product(range(4), repeat=branches))

@@ -5,14 +5,30 @@ from __future__ import annotations
 import pytest
 
 from derive.description.mechanism import Mechanism
-from tests.text.comparisons import COMPARISONS, POSELESS
-from tests.text.twins import MECHANISMS, twins_of
+from tests.text.comparisons import POSELESS
+from tests.text.loops.machines import LOOPS, Loop
+from tests.text.pairs import POSITION_KINEMATICS, comparisons_of, pairs_of
 from tests.text.units import compiled, public_methods
 
-METHODS = [(mechanism, method) for mechanism in MECHANISMS for method in public_methods(mechanism)]
+METHODS = [(mechanism, method) for mechanism in POSITION_KINEMATICS for method in public_methods(mechanism)]
 """Every method that stands in the emitted text. That private ones run is shown statement by statement elsewhere."""
+EVERYWHERE = (
+    "AxesToCartesian",
+    "CartesianToAxes",
+    "AxesToOrientation",
+    "IsSingularity",
+    "Jacobian",
+    "AxesToConfiguration_Offset",
+    "CartesianToAxes_Offset",
+)
+"""Methods of loops that are asked for axis values at which no loop closes as well."""
 
 
+def test_every_loop_is_here() -> None:
+    assert len(LOOPS) == 11
+
+
+@pytest.mark.parametrize("mechanism", POSITION_KINEMATICS, ids=lambda m: m.name)
 def test_every_method_is_here(mechanism: Mechanism) -> None:
     methods = compiled(mechanism).objects[mechanism.block_name].methods
     assert public_methods(mechanism) == tuple(m.name for m in methods if m.access != "PRIVATE")
@@ -20,7 +36,9 @@ def test_every_method_is_here(mechanism: Mechanism) -> None:
 
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
 def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str) -> None:
-    compare = COMPARISONS[method]
-    for twins in twins_of(mechanism):
-        for sample in twins.regular[: 3 if method in POSELESS else None]:
-            compare(twins, sample)
+    compare = comparisons_of(mechanism)[method]
+    for pair in pairs_of(mechanism):
+        for sample in pair.regular[: 3 if method in POSELESS else None]:
+            compare(pair, sample)
+        for sample in pair.any if isinstance(pair, Loop) and method in EVERYWHERE else ():
+            compare(pair, sample)

@@ -17,6 +17,7 @@ from tests.harness.library import Library, StError
 from tests.text.any_method import call_of, methods_of
 from tests.text.closeness import asked
 from tests.text.controller import NOT_INITIALIZED, OK, Controller
+from tests.text.pairs import Pair
 from tests.text.twins import MECHANISMS, Twins, twins_of
 from tests.text.units import compiled, compiled_text, file_of, text_of
 
@@ -39,9 +40,9 @@ def wrong_values(parameter: Parameter) -> Iterator[float]:
         yield 0.0
 
 
-def test_every_parameter_is_checked(twins: tuple[Twins, ...]) -> None:
+def test_every_parameter_is_checked(pairs: tuple[Pair, ...]) -> None:
     """Alone, in a machine that is otherwise right; Python refuses the same."""
-    for one in twins[-3:]:
+    for one in pairs[-3:]:
         given = dict(one.robot.parameters)
         for parameter in machine_parameters(one.mechanism):
             for value in wrong_values(parameter):
@@ -53,10 +54,10 @@ def test_every_parameter_is_checked(twins: tuple[Twins, ...]) -> None:
                 assert asked(partial(type(one.robot), **wrong))[0] == NOT_INITIALIZED
 
 
-def test_the_ends_of_a_range_belong_to_it(twins: tuple[Twins, ...]) -> None:
+def test_the_ends_of_a_range_belong_to_it(pairs: tuple[Pair, ...]) -> None:
     """As far as the other parameters allow: Python knows."""
     accepted = 0
-    for one in (twins[0], twins[1], twins[-3]):
+    for one in (pairs[0], pairs[1], pairs[-3]):
         given = dict(one.robot.parameters)
         for parameter in machine_parameters(one.mechanism):
             for value in (parameter.low, parameter.high):
@@ -65,7 +66,7 @@ def test_the_ends_of_a_range_belong_to_it(twins: tuple[Twins, ...]) -> None:
                 status = Controller(one.library, one.mechanism).initialise(as_integers(parameter, wanted))
                 assert status == expected, f"{one.mechanism.name} {parameter.name} {value}"
                 accepted += status == OK
-    assert accepted > len(twins[0].mechanism.joints)
+    assert accepted > len(pairs[0].mechanism.joints)
 
 
 def as_integers(parameter: Parameter, given: dict[str, float]) -> dict[str, float]:

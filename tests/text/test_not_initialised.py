@@ -10,6 +10,7 @@ import pytest
 
 from tests.text.any_method import Call, call_of, methods_of
 from tests.text.controller import NOT_INITIALIZED, OK, Controller
+from tests.text.pairs import Pair
 from tests.text.twins import Twins
 
 State = dict[str, dict[Any, Any]]
@@ -62,8 +63,8 @@ def refused(one: Twins) -> Controller:
 
 
 @pytest.mark.parametrize("made", [fresh, refused])
-def test_no_method_works(twins: tuple[Twins, ...], made: Callable[[Twins], Controller]) -> None:
-    one = twins[-1]
+def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[Twins], Controller]) -> None:
+    one = pairs[-1]
     controller = made(one)
     for method in methods_of(controller):
         call = call_of(one, controller, method, one.regular[0])

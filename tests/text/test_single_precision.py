@@ -8,6 +8,7 @@ from derive.description.mechanism import Turning
 from tests.orthonormal import mirrored, repaired, slightly_off, too_far_off
 from tests.text.closeness import asked, assert_same
 from tests.text.controller import BAD_INPUT, OK
+from tests.text.pairs import Pair
 from tests.text.reasons import compare_reason
 from tests.text.samples import Command, Rows, Sample, tilted
 from tests.text.twins import Twins
@@ -35,8 +36,8 @@ def test_a_frame_from_real_is_answered_as_in_python(twins: tuple[Twins, ...]) ->
                 assert found[0] == asked(one.robot.inverse, (position, rotation), own, sample.axes)[0]
 
 
-def test_beyond_that_it_is_refused_with_the_same_reason(twins: tuple[Twins, ...]) -> None:
-    one = twins[0]
+def test_beyond_that_it_is_refused_with_the_same_reason(pairs: tuple[Pair, ...]) -> None:
+    one = pairs[0]
     sample = one.regular[0]
     (position, rotation), own = one.robot.forward(sample.axes)
     for matrix in (*too_far_off(np.array(rotation)), *mirrored(np.array(rotation))):

@@ -2,45 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
 
-from tests.text import test_garbage, test_initialise, test_not_initialised, test_single_precision
+from tests.text import test_initialise
 from tests.text.comparisons import POSELESS
 from tests.text.controller import IMPOSSIBLE, NOT_INITIALIZED, OK, UNREACHABLE, Controller
 from tests.text.loops.answers import COMPARISONS
 from tests.text.loops.machines import Loop
-from tests.text.twins import Twins
 from tests.text.units import compiled
-
-GARBAGE_TESTS = (
-    test_garbage.test_garbage_in_one_number,
-    test_garbage.test_garbage_in_every_number,
-    test_garbage.test_garbage_in_what_is_written,
-    test_garbage.test_garbage_in_axes_as_in_python,
-    test_garbage.test_garbage_in_a_command_as_in_python,
-    test_garbage.test_what_is_no_rotation,
-    test_single_precision.test_beyond_that_it_is_refused_with_the_same_reason,
-    test_garbage.test_the_largest_numbers,
-)
-INITIALISE_TESTS = (test_initialise.test_every_parameter_is_checked, test_initialise.test_the_ends_of_a_range_belong_to_it)
-
-
-@pytest.mark.parametrize("test", GARBAGE_TESTS, ids=lambda test: test.__name__)
-def test_garbage_as_in_serial_machines(loops: tuple[Loop, ...], test: Callable[[tuple[Loop, ...]], None]) -> None:
-    test(loops[:2] * 2)
-
-
-@pytest.mark.parametrize("test", INITIALISE_TESTS, ids=lambda test: test.__name__)
-def test_parameters(loops: tuple[Loop, ...], test: Callable[[tuple[Loop, ...]], None]) -> None:
-    test(loops)
-
-
-@pytest.mark.parametrize("made", [test_not_initialised.fresh, test_not_initialised.refused])
-def test_no_method_works_before_initialize(loops: tuple[Loop, ...], made: Callable[[Twins], Controller]) -> None:
-    test_not_initialised.test_no_method_works(loops, made)
 
 
 def test_limits_are_in_order(loops: tuple[Loop, ...]) -> None:
