@@ -23,8 +23,27 @@ ALL_OF_THEM_QUICK = (("unit",), ("harness",))
 """The folders whose tests are quick where they are about no mechanism of the catalogue, but for those that are slow."""
 OF_ONE_MECHANISM = {"hexapod": "Kin_Hexapod", "search": "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"}
 """Folders of tests about one mechanism, which their parameters do not name."""
+SWEEPS = (
+    "catalogue/search/test_both_ways.py::test_every_solution",
+    "catalogue/search/test_both_ways.py::test_right_angles",
+    "catalogue/search/test_planted.py",
+    "catalogue/test_pairs_of_singularities.py",
+    "catalogue/test_precision.py",
+    "catalogue/hexapod/test_planted_faults.py",
+    "harness/test_harness_sample.py::test_blark",
+    "text/loops/test_branches.py",
+    "text/selftest",
+    "text/test_contract.py",
+    "text/test_cost.py",
+    "text/test_every_statement.py",
+    "text/test_pairs_of_singularities.py",
+    "text/test_second_grammar.py",
+    "unit/kinematics/test_descriptions.py::test_the_witness",
+    "unit/optimize/test_unroll.py::test_every_slot",
+    "unit/solver/test_solve.py::test_the_same_text",
+)
+"""Tests that cost more than all others of their path together: `make test` runs them."""
 PATHS = {
-    "Kin_Gantry3": "slides alone",
     "Kin_Scara4_ZCcoupled_Type1": "a serial arm in a plane, with turns and a coupled axis",
     "Kin_Pos_RRR": "a serial arm in space",
     "Kin_P2C_Type1": "a closed loop",
@@ -41,8 +60,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         folders = item.path.relative_to(ROOT).parts[:-1]
         names = mechanisms_of(item, folders)
+        place = f"{item.path.relative_to(ROOT).as_posix()}::{item.name}"
         is_quick = set(names) <= PATHS.keys() if names else folders[:1] in ALL_OF_THEM_QUICK
-        if is_quick and item.get_closest_marker("slow") is None:
+        if is_quick and item.get_closest_marker("slow") is None and not place.startswith(SWEEPS):
             item.add_marker("quick")
         if is_shared_out:
             by_file = not names or not folders or folders[0] == "unit"
