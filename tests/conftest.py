@@ -43,6 +43,15 @@ SWEEPS = (
     "unit/solver/test_solve.py::test_the_same_text",
 )
 """Tests that cost more than all others of their path together: `make test` runs them."""
+SHARED_BY_A_FILE = (
+    "codesys/",
+    "text/selftest/",
+    "text/test_contract.py",
+    "text/test_portable.py",
+    "text/test_second_grammar.py",
+    "unit/",
+)
+"""Tests that share more with those of their file than with those of their mechanism: all units compiled together, a grammar."""
 PATHS = {
     "Kin_Scara4_ZCcoupled_Type1": "a serial arm in a plane, with turns and a coupled axis",
     "Kin_Pos_RRR": "a serial arm in space",
@@ -65,7 +74,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if is_quick and item.get_closest_marker("slow") is None and not place.startswith(SWEEPS):
             item.add_marker("quick")
         if is_shared_out:
-            by_file = not names or not folders or folders[0] == "unit"
+            by_file = not names or not folders or place.startswith(SHARED_BY_A_FILE)
             item.add_marker(pytest.mark.xdist_group(str(item.path.relative_to(ROOT)) if by_file else names[0]))
 
 
