@@ -7,7 +7,7 @@ base + scale s² with the other side of the two roots at s < 0), how often it wa
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from math import acos, atan2, hypot, pi, sqrt
 from typing import Any
 
@@ -69,7 +69,7 @@ def every_root(
 def _finished(
     trial: Callable[[Values], Any], finish: Callable[[Values], Any], start: float, trial_given: Values, finish_given: Values,
     scan: Scan, most: int,
-) -> Any:
+) -> Iterator[Values]:
     places = _Search(_of(trial, trial_given)).roots(start, _scanned(scan, start, trial_given))
     places.sort(key=lambda place: abs((place[0] - start + pi) % (2.0 * pi) - pi))
     at = _of(finish, finish_given)
