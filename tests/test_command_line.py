@@ -12,8 +12,8 @@ import pytest
 
 from derive.__main__ import OUTPUT, main
 from derive.description.catalogue import MECHANISMS, catalogue, load
-from derive.kinematics.build import build
 from derive.output import differences
+from derive.pipeline import derive_one
 
 SCARA = MECHANISMS / "kin_scara4_zccoupled_type1.py"
 ROOT = MECHANISMS.parents[1]
@@ -190,8 +190,8 @@ def test_an_alias_is_a_mechanism_of_its_own(folder: Path) -> None:
 
 
 def test_what_was_derived_travels_between_processes_unchanged() -> None:
-    kinematics = build(load(SCARA))
-    assert pickle.loads(pickle.dumps(kinematics)) == kinematics
+    built = derive_one(load(SCARA))
+    assert pickle.loads(pickle.dumps(built)) == built
 
 
 def test_by_products_are_no_orphans(tmp_path: Path) -> None:

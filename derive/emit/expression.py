@@ -119,7 +119,7 @@ class ExpressionPrinter(ABC):
         return f" {self.logic(word)} ".join(parts)
 
     def _number(self, node: sp.Number) -> tuple[str, int]:
-        value = float(node)
+        value = _plain(float(node))
         text = self.number(abs(value))
         return (f"-{text}", _UNARY) if value < 0 else (text, ATOM)
 
@@ -143,7 +143,7 @@ class ExpressionPrinter(ABC):
                 numerator, denominator = numerator / denominator, sp.Integer(1)
         else:
             numerator = abs(coefficient)
-        head = [] if numerator == 1 and above else [self.number(float(numerator))]
+        head = [] if numerator == 1 and above else [self.number(_plain(float(numerator)))]
         text = "*".join(head + [self._text(f, _UNARY) for f in above])
         bottom = ([] if denominator == 1 else [self.number(float(denominator))]) + [
             self._text(f, _UNARY) for f in below
@@ -151,6 +151,12 @@ class ExpressionPrinter(ABC):
         if bottom:
             text += "/" + (bottom[0] if len(bottom) == 1 else f"({'*'.join(bottom)})")
         return (f"-{text}", _SUM) if coefficient < 0 else (text, PRODUCT)
+
+
+def _plain(value: float) -> float:
+    """The number with fifteen digits, where the others are rounding: 1e-22, not 9.999999999999999e-23."""
+    short = float(f"{value:.15g}")
+    return short if abs(short - value) <= abs(value) * 2.3e-16 else value
 
 
 class _Whole(ExpressionPrinter):

@@ -216,7 +216,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
         body: list[Statement] = []
         for s in program.body:
             if not isinstance(s, Let):
-                body.append(_with_names(_calling(s, lowered), names))
+                body.append(_with_names(calling(s, lowered), names))
                 continue
             value = s.value.xreplace(names)
             if not {v.name for v in symbols_of(value)} <= known:
@@ -233,7 +233,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
     return tuple(lowered.values()), tuple(hoisted)
 
 
-def _calling(statement: Statement, programs: Mapping[str, Program]) -> Statement:
+def calling(statement: Statement, programs: Mapping[str, Program]) -> Statement:
     """The statement; a call of the program as it is now."""
     if isinstance(statement, FindRoot):
         return replace(statement, trial=programs[statement.trial.name], finish=programs[statement.finish.name])

@@ -62,7 +62,7 @@ from derive.kinematics.forward import (
 )
 from derive.kinematics.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics.kinematics import Freedom, Kinematics, Margin
-from derive.kinematics.parameters import machine_parameters, setup_program
+from derive.kinematics.parameters import machine_parameters, setup_program, windows
 from derive.kinematics.scanned import (
     DETERMINANT,
     branch_statements,
@@ -73,6 +73,7 @@ from derive.kinematics.scanned import (
     solve_both,
 )
 from derive.kinematics.shared_names import refuse_shared_names
+from derive.lowering.lower import lowered
 from derive.plate.legs import MARGIN
 from derive.plate.newton import (
     at_given,
@@ -183,13 +184,18 @@ def _count(mechanism: Mechanism) -> None:
 def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...]) -> Kinematics:
     """Everything together, with what depends on parameters alone moved into the setup."""
     parameters = machine_parameters(mechanism)
-    constants = {o.name for o in setup_program(mechanism, parameters, ()).outputs}
-    lowered, hoisted = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], constants)
-    setup = setup_program(mechanism, parameters, hoisted)
-    settable = setup_program(mechanism, parameters, hoisted, has_settings=True) if mechanism.period_joints else None
-    finished = {program.name: program for program in lowered}
-    called = {program.name for program in shared(lowered)}
-    for program in (p for p in lowered if p.name not in called):  # a caller gives what those read
+    constants = [o.name for o in setup_program(mechanism, parameters).outputs]
+    settled = [name for name in constants if name not in windows(mechanism)]  # drives may change those later
+    whole, first = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], settled)
+    shorter, second = lowered(whole, [*settled, *(let.name.name for let in first)])
+    hoisted = (*first, *second)
+    derived = next(program for program in whole if program.name == "branch")
+    read = frozenset(s for program in (*shorter, derived) for s in program.inputs)
+    setup = setup_program(mechanism, parameters, hoisted, read)
+    settable = setup_program(mechanism, parameters, hoisted, read, has_settings=True) if mechanism.period_joints else None
+    finished = {program.name: program for program in shorter}
+    called = {program.name for program in shared(shorter)}
+    for program in (p for p in shorter if p.name not in called):  # a caller gives what those read
         _check_inputs(mechanism, program, {o.name for o in setup.outputs})
         _check_outputs(program)
     return Kinematics(
@@ -199,6 +205,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
         forward=finished["forward"],
         orientation=finished["orientation"],
         branch=finished["branch"],
+        derived_branch=derived,
         limits=finished["limits"],
         singularity=finished["singularity"],
         jacobian=finished["jacobian"],

@@ -5,7 +5,7 @@ Where a controller hands over the limits of its drives, `limits_of_axis` narrows
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 import sympy as sp
 
@@ -102,9 +102,14 @@ def _setting(name: str, meaning: str, unit: str, interval: tuple[float, float] |
 
 
 def setup_program(
-    mechanism: Mechanism, parameters: tuple[Parameter, ...], hoisted: tuple[Let, ...], *, has_settings: bool = False
+    mechanism: Mechanism,
+    parameters: tuple[Parameter, ...],
+    hoisted: tuple[Let, ...] = (),
+    read: Collection[sp.Symbol] = (),
+    *,
+    has_settings: bool = False,
 ) -> Program:
-    """Check every parameter; outputs are the parameters themselves, the effective limits, and what was hoisted.
+    """Check every parameter; outputs are the parameters themselves, the effective limits, and what is read of what was hoisted.
 
     Where drives have settings, what `limits_of_axis` gives is left to it: nothing here may depend on it.
     """
@@ -133,7 +138,7 @@ def setup_program(
         body.append(Let(TIE_OF_LENGTHS, TIE_SHARE**2 * SCALE**2, "squared distances closer than this are equal"))
         outputs.append(Output(TIE_OF_LENGTHS.name, TIE_OF_LENGTHS))
     body += hoisted
-    outputs += [*(Output(let.name.name, let.name) for let in hoisted)]
+    outputs += [Output(let.name.name, let.name) for let in hoisted if let.name in read]
     inputs = tuple(input_of(p) for p in parameters)
     typed = tuple(converted(s, parameters) for s in bare(body))
     return verify(Program("setup", inputs, typed, tuple(outputs)))
@@ -264,6 +269,13 @@ def _limit_outputs(key: str) -> list[Output]:
         Output(f"upper_{key}", real(f"effective_upper_{key}")),
         Output(f"unlimited_{key}", flag(f"unlimited_{key}")),
     ]
+
+
+def windows(mechanism: Mechanism) -> frozenset[str]:
+    """The constants that say where an axis may be: its widened limits, and the turn inside them."""
+    found = [o for j in mechanism.joints for o in _window_outputs(j.key, has_turns=j.multi_turn)]
+    found += [o for quantity in mechanism.limited for o in _window_outputs(quantity.name, has_turns=False)]
+    return frozenset(o.name for o in found)
 
 
 def _window_outputs(key: str, *, has_turns: bool) -> list[Output]:

@@ -20,12 +20,15 @@ from functools import cache
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
+from derive.ir.passes import told_in
 from derive.ir.primitives import (
     Select,
 )
 from derive.ir.program import (
     Let,
+    Program,
     Statement,
+    binds,
     expressions,
     reads,
 )
@@ -59,6 +62,33 @@ Item = Statement | Arms
 def in_arms(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
     """The statements of a program, choices that share a condition gathered with what they alone need."""
     return _sunk(_in_arms(body, wanted), {s for value in wanted for s in names_in(value)})
+
+
+def told_on_sides(items: Sequence[Item], program: Program) -> tuple[Item, ...]:
+    """The statements, with what reasons read and a choice keeps to one of its sides written out in them."""
+    values = {let.name: let.value for let in program.lets()}
+    bound: set[sp.Symbol] = set()
+    found: list[Item] = []
+    for item in items:
+        found.append(item if isinstance(item, Arms) else told_in(item, bound, values))
+        bound |= _bound_behind(item)
+    return tuple(found)
+
+
+def _bound_behind(item: Item) -> set[sp.Symbol]:
+    """What is bound behind a statement; behind a choice, what both sides bind."""
+    if not isinstance(item, Arms):
+        return set(binds(item))
+    holds, fails = ({name for inner in side for name in _bound_behind(inner)} for side in (item.holds, item.fails))
+    return holds & fails
+
+
+def bound_by(items: Iterable[Item]) -> tuple[sp.Symbol, ...]:
+    """Every name that the statements bind, on any side, each once."""
+    found: dict[sp.Symbol, None] = {}
+    for item in items:
+        found |= dict.fromkeys(bound_by((*item.holds, *item.fails)) if isinstance(item, Arms) else binds(item))
+    return tuple(found)
 
 
 def spared(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:

@@ -18,6 +18,8 @@ from derive.ir.primitives import (
     NearestPeriod,
     Root,
     Select,
+    ToReal,
+    Wrap,
 )
 from derive.ir.program import (
     Let,
@@ -53,6 +55,11 @@ _FUNCTIONS: dict[type[sp.Basic], Callable[..., object]] = {
     sp.Lt: lambda a, b: a < b,
     sp.Ge: lambda a, b: a >= b,
     sp.Gt: lambda a, b: a > b,
+    sp.Eq: lambda a, b: a == b,
+    sp.Ne: lambda a, b: a != b,
+    sp.Not: lambda c: not c,
+    ToReal: lambda n: n,
+    Wrap: lambda angle: angle - 2 * mpmath.pi * mpmath.ceil(angle / (2 * mpmath.pi) - Number(1) / 2),
     sp.And: lambda *c: all(c),
     sp.Or: lambda *c: any(c),
     sp.Add: lambda *t: sum(t, Number(0)),

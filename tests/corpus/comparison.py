@@ -21,6 +21,8 @@ FRAME = 1e-10
 SINGULAR = 1e-4
 COINCIDENT = 1e-9
 """Branches with a margin below this may be written as coinciding or not."""
+ROUNDED = 1e-7
+"""What a singular pose makes of rounding: what it lacks is known to this share, and a margin below may have the other sign."""
 Ask = Callable[[Robot, Question], Answer]
 
 
@@ -28,12 +30,13 @@ def differences(one: Robot, asked: list[Question], recorded: list[Answer], ask: 
     """Every difference, in words."""
     for question, old in zip(asked, recorded, strict=True):
         new = ask(one, question)
+        is_singular = question["kind"] == "singular"
         compare = _inverse if question["call"] == "inverse" else _other
-        for found in compare(one, old, new):
+        for found in compare(one, old, new, ROUNDED if is_singular else AXES):
             yield f"{question['kind']} {question['call']} of {one.made!r}: {found}; asked: {question}"
 
 
-def _inverse(one: Robot, old: Answer, new: Answer) -> Iterator[str]:
+def _inverse(one: Robot, old: Answer, new: Answer, share: float) -> Iterator[str]:
     olds, news = old.get("slots"), new.get("slots")
     if olds is None or news is None:
         yield from _exact("call", {**old, "named": 0}, {**new, "named": 0})
@@ -41,9 +44,9 @@ def _inverse(one: Robot, old: Answer, new: Answer) -> Iterator[str]:
         yield f"{len(olds)} slots were {len(news)}"
     else:
         for number, (was, now) in enumerate(zip(olds, news, strict=True)):
-            yield from _solution(one, f"slot {number}", was, now)
+            yield from _solution(one, f"slot {number}", was, now, share)
     for number, (was, now) in enumerate(zip(old["named"], new["named"], strict=True)):
-        yield from _solution(one, f"configuration {number}", was, now)
+        yield from _solution(one, f"configuration {number}", was, now, share)
     if "trusted" in old:
         yield from _trusted(one, old, new)
 
@@ -60,8 +63,8 @@ def _trusted(one: Robot, old: Answer, new: Answer) -> Iterator[str]:
             yield from axes_differ(one, f"trusted slot {slot}", was, [b + t for b, t in zip(now, turns, strict=True)], margin)
 
 
-def _solution(one: Robot, place: str, old: Answer, new: Answer) -> Iterator[str]:
-    yield from _reals(one, f"{place}, why", old.get("why"), new.get("why"))
+def _solution(one: Robot, place: str, old: Answer, new: Answer, share: float) -> Iterator[str]:
+    yield from _reals(one, f"{place}, why", old.get("why"), new.get("why"), share=share)
     keys = ("status", "message")
     yield from _exact(place, {k: old.get(k) for k in keys}, {k: new.get(k) for k in keys})
     if "axes" in old and "axes" in new:
@@ -98,31 +101,31 @@ def _same_frame(one: Robot, old: list[float], new: list[float]) -> bool:
     return near and all(abs(a - b) <= AXES for row, other in rows for a, b in zip(row, other, strict=True))
 
 
-def _other(one: Robot, old: Answer, new: Answer) -> Iterator[str]:
+def _other(one: Robot, old: Answer, new: Answer, share: float) -> Iterator[str]:
     if "axes" in old and "axes" in new:
         yield from axes_differ(one, "axes", old["axes"], new["axes"], min(old["margin"], new["margin"]))
         old, new = old | {"axes": 0, "margin": 0}, new | {"axes": 0, "margin": 0}
     margin = old.get("margin", 1.0)
-    if "configuration" in old and "configuration" in new and margin < COINCIDENT:
+    if "configuration" in old and "configuration" in new and margin < max(COINCIDENT, share):
         pairs = zip(old["configuration"], new["configuration"], strict=True)
-        if all(a == b or 3 in (a, b) for a, b in pairs):
+        if share == ROUNDED or all(a == b or 3 in (a, b) for a, b in pairs):
             new = new | {"configuration": old["configuration"]}
-    yield from _reals(one, "", {**old, "margin": 0}, {**new, "margin": 0}, max(margin, SINGULAR))
+    yield from _reals(one, "", {**old, "margin": 0}, {**new, "margin": 0}, max(margin, SINGULAR), share)
 
 
-def _reals(one: Robot, place: str, old: Any, new: Any, margin: float = 1.0) -> Iterator[str]:
+def _reals(one: Robot, place: str, old: Any, new: Any, margin: float = 1.0, share: float = AXES) -> Iterator[str]:
     """Trees of the same form, texts and whole numbers equal, reals within the digits that are left."""
     if isinstance(old, dict) and isinstance(new, dict) and old.keys() == new.keys():
         for key in old:
-            if not (key == "missing" and _same_amount(one, old, new)):
+            if not (key == "missing" and _same_amount(one, old, new, share)):
                 within = max(margin, 0.01) if key == "margins" else margin
-                yield from _reals(one, f"{place} {key}", old[key], new[key], within)
+                yield from _reals(one, f"{place} {key}", old[key], new[key], within, share)
     elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
         size = one.reach if place.endswith(("position", "jacobian")) else 1.0
         size = max((size, *(abs(x) for x in old if isinstance(x, float) and isfinite(x))))
         for a, b in zip(old, new, strict=True):
             if not (_are_reals(a, b) and abs(a - b) <= FRAME * size / margin):
-                yield from _reals(one, place, a, b, margin)
+                yield from _reals(one, place, a, b, margin, share)
     elif _are_reals(old, new):
         if abs(old - new) > AXES * max(1.0, abs(old)) / margin:
             yield f"{place}: {new!r} was {old!r}"
@@ -130,11 +133,11 @@ def _reals(one: Robot, place: str, old: Any, new: Any, margin: float = 1.0) -> I
         yield from _exact(place, old, new)
 
 
-def _same_amount(one: Robot, old: Answer, new: Answer) -> bool:
+def _same_amount(one: Robot, old: Answer, new: Answer, share: float) -> bool:
     """Whether two amounts that are missing are one: by the unit that the reason names."""
     unit = str(old.get("reason", "")).rpartition("[")[2].partition("]")[0]
     size = {"deg": 180.0, "u": one.reach}.get(unit, 1.0)
-    return abs(old["missing"] - new["missing"]) <= AXES * max(size, abs(old["missing"]))
+    return abs(old["missing"] - new["missing"]) <= share * max(size, abs(old["missing"]))
 
 
 def _are_reals(*values: Any) -> bool:

@@ -98,13 +98,13 @@ WRONG = {
     "AxesToCartesian: two bytes exchanged": Break(_FORWARD, "Softkin_PeriodNumber(a.a3)", "Softkin_PeriodNumber(a.a1)"),
     "AxesToCartesian: a byte without a meaning": Break(_FORWARD, "cd := ", "configuration.abyData[30] := 7;\ncd := "),
     "CartesianToAxes: a tie": Break(_INVERSE, "least - 1.0E-6", "least + 1.0E6"),
-    "CartesianToAxes: a tolerance": Break(_BRANCH, ">= -1.0E-12", ">= 0.01"),
+    "CartesianToAxes: a tolerance": Break(_BRANCH, ">= -scaleA2SquaredTimesRounding", ">= 1.0E10*scaleA2SquaredTimesRounding"),
     "CartesianToAxes: an error": Break(_BRANCH, "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS", "SMC_TRAFO_INVALID_COUPLING"),
     "CartesianToAxes: a limit": Break(_LIMITS, "(a.a3 <= highestA4)", "(a.a3 <= 2.0*highestA4)"),
     "CartesianToAxes: an output before a refusal": Break(
         _INVERSE, "status := TestLimits(", "a := solution;\nstatus := TestLimits("
     ),
-    "CartesianToAxes: a turn": Break(_BRANCH, "360.0*turnA4 - 360.0", "360.0*turnA4"),
+    "CartesianToAxes: a turn": Break(_BRANCH, "SEL(turnA4 > 0, turnA4, turnA4 - 1)", "SEL(turnA4 > 0, turnA4, turnA4)"),
     "CartesianToAxes: byte 3": Break("FUNCTION Softkin_AdmitsBranch", "(byConfigured = 3)", "(byConfigured = 7)"),
     "Jacobian: a column": Break(_JACOBIAN, "J[3, 3] := 1.0;", "J[3, 3] := 0.0;"),
     "Jacobian: an element outside": Break(_JACOBIAN, "J[row, column] := 0.0;", "J[row, 0] := 0.0;"),

@@ -19,7 +19,6 @@ from derive.ir.constants import (
     DEGREE,
     EDGE,
 )
-from derive.ir.passes import told_in
 from derive.ir.primitives import (
     Atan2,
     NearestPeriod,
@@ -35,7 +34,6 @@ from derive.ir.program import (
     Program,
     Require,
     Solve,
-    binds,
     expressions,
     rewritten,
     told,
@@ -46,7 +44,8 @@ from derive.ir.symbols import (
     symbols_of,
 )
 from derive.ir.verify import verify
-from derive.optimize.control_flow import Arms, Item, in_arms, spared
+from derive.lowering.decided import decided
+from derive.optimize.control_flow import Arms, Item, in_arms, spared, told_on_sides
 
 Shape = str | tuple["Shape", ...]
 """Names, nested as the tuples of the method's arguments and results are."""
@@ -102,29 +101,9 @@ def scalar_body(method: Method, refusals: Refusals = PLAIN) -> list[str]:
 
 def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """The statements of a program on plain numbers."""
-    program = without_conversions(program)
+    program = decided(without_conversions(program))
     wanted = [o.value for o in program.outputs]
-    items = spared(in_arms(program.body, wanted), wanted)
-    return item_lines(_told(items, program), refusals, printer)
-
-
-def _told(items: Sequence[Item], program: Program) -> list[Item]:
-    """The statements, with what reasons read and a choice keeps to one of its sides written out in them."""
-    values = {let.name: let.value for let in program.lets()}
-    bound: set[sp.Symbol] = set()
-    found: list[Item] = []
-    for item in items:
-        found.append(item if isinstance(item, Arms) else told_in(item, bound, values))
-        bound |= _bound_by(item)
-    return found
-
-
-def _bound_by(item: Item) -> set[sp.Symbol]:
-    """What is bound behind a statement; behind a choice, what both sides bind."""
-    if not isinstance(item, Arms):
-        return set(binds(item))
-    holds, fails = ({name for inner in side for name in _bound_by(inner)} for side in (item.holds, item.fails))
-    return holds & fails
+    return item_lines(told_on_sides(spared(in_arms(program.body, wanted), wanted), program), refusals, printer)
 
 
 def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:

@@ -143,7 +143,7 @@ def _constants(kin: Kinematics) -> frozenset[str]:
 
 def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers. Near a fold they have no answer, an empty tuple: one branch after the other has."""
-    kin = replace(kin, branch=untold(far_from_folds(kin.branch)), limits=untold(kin.limits))
+    kin = replace(kin, branch=untold(far_from_folds(kin.derived_branch)), limits=untold(kin.limits))
     methods, parts = _with_constant_parts(kin, _methods(kin))
     known = (*kin.setup.lets(), *parts)
     functions = (_slots(kin, methods[0], known), _directions(kin, methods[1], known), _direction(kin, methods[2], known, parts))
@@ -186,7 +186,7 @@ def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
 
 def has_folds(kin: Kinematics) -> bool:
     """Whether the functions on plain numbers have no answer near a fold."""
-    return can_be_unrolled(kin) and far_from_folds(kin.branch) is not kin.branch
+    return can_be_unrolled(kin) and far_from_folds(kin.derived_branch) is not kin.derived_branch
 
 
 def _refusals(answer: Callable[[Status], str]) -> Refusals:

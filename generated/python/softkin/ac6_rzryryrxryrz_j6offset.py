@@ -28,9 +28,9 @@ Singularities:
     determinant: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 168 additions, 184 multiplications, 44 divisions, 1 square roots, 16 sines
-    inverse: 76590 additions, 122149 multiplications, 19053 divisions, 2675 square roots, 5936 sines
-    inverse, all 16 branches open: 1224945 additions, 1953709 multiplications, 304713 divisions, 42770 square roots, 94976 sines
+    forward: 149 additions, 189 multiplications, 22 divisions, 0 square roots, 14 sines
+    inverse: 66521 additions, 105731 multiplications, 7125 divisions, 2663 square roots, 4596 sines
+    inverse, all 16 branches open: 1063841 additions, 1691021 multiplications, 113865 divisions, 42578 square roots, 73536 sines
     the search along A6: at most 640 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
@@ -138,6 +138,16 @@ class Constants(NamedTuple):
     effective_q3_tried: float
     swing_scale_q3_tried: float
     searched: bool
+    machine_scale_times_free_angle: float
+    a2_plus_effective_q3_tried: float
+    a2_minus_effective_q3_tried: float
+    d4_by_effective_q3_tried: float
+    a3_by_effective_q3_tried: float
+    swing_scale_q3_tried_squared: float
+    size_of_j6_offset_x: float
+    part_of_fits: float
+    one_by_machine_scale: float
+    part_of_constant: float
 
 
 class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
@@ -458,6 +468,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         effective_q3_tried = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
         swing_scale_q3_tried = 2.0*a2*effective_q3_tried  # q3: law of cosines in the x_from_q1² + z_from_q1² equation
         searched = abs(j6_offset_x) > 0.0  # whether to search along A6
+        machine_scale_times_free_angle = 1e-11*machine_scale
+        a2_plus_effective_q3_tried = a2 + effective_q3_tried
+        a2_minus_effective_q3_tried = a2 - effective_q3_tried
+        d4_by_effective_q3_tried = d4/effective_q3_tried
+        a3_by_effective_q3_tried = a3/effective_q3_tried
+        swing_scale_q3_tried_squared = swing_scale_q3_tried*swing_scale_q3_tried
+        size_of_j6_offset_x = abs(j6_offset_x)
+        part_of_fits = 0.5*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
+        one_by_machine_scale = 1.0/machine_scale
+        part_of_constant = 1e-12*swing_scale_q3_tried*swing_scale_q3_tried
         return Constants(
             d1=d1, a1=a1, a2=a2, a3=a3, d4=d4, j6_offset_x=j6_offset_x, d6=d6, offset_a1=offset_a1,
             offset_a2=offset_a2, offset_a3=offset_a3, offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6,
@@ -473,6 +493,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             upper_a6=effective_upper_a6, unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6,
             single_a6=single_a6, mid_a6=mid_a6, machine_scale=machine_scale, effective_q3_tried=effective_q3_tried,
             swing_scale_q3_tried=swing_scale_q3_tried, searched=searched,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            a2_plus_effective_q3_tried=a2_plus_effective_q3_tried,
+            a2_minus_effective_q3_tried=a2_minus_effective_q3_tried,
+            d4_by_effective_q3_tried=d4_by_effective_q3_tried, a3_by_effective_q3_tried=a3_by_effective_q3_tried,
+            swing_scale_q3_tried_squared=swing_scale_q3_tried_squared, size_of_j6_offset_x=size_of_j6_offset_x,
+            part_of_fits=part_of_fits, one_by_machine_scale=one_by_machine_scale, part_of_constant=part_of_constant,
         )
 
     def _try_joint(self, given: Values) -> Values | Status:
@@ -484,33 +510,34 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         k = self._constants
         a1 = k.a1
         a2 = k.a2
+        a2_minus_effective_q3_tried = k.a2_minus_effective_q3_tried
+        a2_plus_effective_q3_tried = k.a2_plus_effective_q3_tried
         a3 = k.a3
+        a3_by_effective_q3_tried = k.a3_by_effective_q3_tried
         d1 = k.d1
         d4 = k.d4
+        d4_by_effective_q3_tried = k.d4_by_effective_q3_tried
         d6 = k.d6
-        effective_q3_tried = k.effective_q3_tried
         j6_offset_x = k.j6_offset_x
-        machine_scale = k.machine_scale
-        swing_scale_q3_tried = k.swing_scale_q3_tried
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        swing_scale_q3_tried_squared = k.swing_scale_q3_tried_squared
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # the point that the last joints turn about
-        wrist_x_tried = goal_x + goal_r12*j6_offset_x*sin_q6_tried - d6*goal_r13 - goal_r11*j6_offset_x*cos_q6_tried
-        wrist_y_tried = goal_y + goal_r22*j6_offset_x*sin_q6_tried - d6*goal_r23 - goal_r21*j6_offset_x*cos_q6_tried
+        wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*j6_offset_x - d6*goal_r13
+        wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*j6_offset_x - d6*goal_r23
         # q1: of the point from its axis
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
-        slope_cos_q6_tried = -sin(tried)
-        slope_sin_q6_tried = cos(tried)
-        slope_wrist_x_tried = goal_r12*j6_offset_x*slope_sin_q6_tried - goal_r11*j6_offset_x*slope_cos_q6_tried
-        slope_wrist_y_tried = goal_r22*j6_offset_x*slope_sin_q6_tried - goal_r21*j6_offset_x*slope_cos_q6_tried
+        slope_wrist_x_tried = j6_offset_x*(goal_r12*cos_q6_tried + goal_r11*sin_q6_tried)
+        slope_wrist_y_tried = j6_offset_x*(goal_r22*cos_q6_tried + goal_r21*sin_q6_tried)
         # its reference where it is free
-        if freed != 0 and distance_q1_tried > 1e-11*machine_scale:
+        if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
             along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
-            if distance_q1_tried > 1e-11*machine_scale:
+            if distance_q1_tried > machine_scale_times_free_angle:
                 length_q1_tried = distance_q1_tried
                 slope_distance_q1_tried = (
-                    0.5*(
-                        2.0*slope_wrist_x_tried*wrist_x_tried + 2.0*slope_wrist_y_tried*wrist_y_tried
+                    (
+                        slope_wrist_x_tried*wrist_x_tried + slope_wrist_y_tried*wrist_y_tried
                     )/(distance_q1_tried if distance_q1_tried > 0.0 else 1.0)
                     if distance_q1_tried > 0.0
                     else 0.0
@@ -519,50 +546,52 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else:
                 length_q1_tried = 1.0
                 slope_length_q1_tried = 0.0
-            cos_q1_tried = along_q1_tried/length_q1_tried
+            one_by_length_q1_tried = 1.0/length_q1_tried
+            cos_q1_tried = along_q1_tried*one_by_length_q1_tried
             across_q1_tried = wanted_shoulder*wrist_y_tried
-            sin_q1_tried = across_q1_tried/length_q1_tried
+            sin_q1_tried = across_q1_tried*one_by_length_q1_tried
             slope_along_q1_tried = wanted_shoulder*slope_wrist_x_tried
-            slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)/length_q1_tried
+            slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)*one_by_length_q1_tried
             slope_across_q1_tried = wanted_shoulder*slope_wrist_y_tried
-            slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)/length_q1_tried
+            slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)*one_by_length_q1_tried
         else:
             chosen_q1 = freed_angle if freed == 0 else free_a1  # q1, where it is free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
             slope_cos_q1_tried = 0.0
             slope_sin_q1_tried = 0.0
-        r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried
         # what the unknown links must span
         wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
-        wrist_z_tried = goal_z + goal_r32*j6_offset_x*sin_q6_tried - d6*goal_r33 - goal_r31*j6_offset_x*cos_q6_tried
+        wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*j6_offset_x - d6*goal_r33
         wrist_z_from_q1_tried = wrist_z_tried - d1  # what the unknown links must span
         reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
+        part_of_one_less_cos_q3_tried = a2_plus_effective_q3_tried - reach_tried
+        part_of_one_less_cos_q3_tried_2 = a2_plus_effective_q3_tried + reach_tried
         # 1 - cosine, times the scale
-        one_less_cos_q3_tried = (a2 + effective_q3_tried + reach_tried)*(a2 + effective_q3_tried - reach_tried)
+        one_less_cos_q3_tried = part_of_one_less_cos_q3_tried*part_of_one_less_cos_q3_tried_2
+        part_of_one_plus_cos_q3_tried = a2_minus_effective_q3_tried - reach_tried
+        part_of_one_plus_cos_q3_tried_2 = a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = (effective_q3_tried + reach_tried - a2)*(a2 + reach_tried - effective_q3_tried)
+        one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried*part_of_one_plus_cos_q3_tried_2
         # twice the scale, with the rounding of its parts
         both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        slope_wrist_z_tried = goal_r32*j6_offset_x*slope_sin_q6_tried - goal_r31*j6_offset_x*slope_cos_q6_tried
+        slope_wrist_z_tried = j6_offset_x*(goal_r32*cos_q6_tried + goal_r31*sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried*cos_q1_tried + slope_wrist_y_tried*sin_q1_tried + slope_cos_q1_tried*wrist_x_tried
             + slope_sin_q1_tried*wrist_y_tried
         )
         slope_reach_tried = (
-            0.5*(
-                2.0*slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried + 2.0*slope_wrist_z_tried*wrist_z_from_q1_tried
+            -(
+                -slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried - slope_wrist_z_tried*wrist_z_from_q1_tried
             )/(reach_tried if reach_tried > 0.0 else 1.0)
             if reach_tried > 0.0
             else 0.0
         )
         slope_one_less_cos_q3_tried = (
-            (a2 + effective_q3_tried - reach_tried)*slope_reach_tried
-            - (a2 + effective_q3_tried + reach_tried)*slope_reach_tried
+            -(part_of_one_less_cos_q3_tried_2 - part_of_one_less_cos_q3_tried)*slope_reach_tried
         )
         slope_one_plus_cos_q3_tried = (
-            (effective_q3_tried + reach_tried - a2)*slope_reach_tried
-            + (a2 + reach_tried - effective_q3_tried)*slope_reach_tried
+            -(part_of_one_plus_cos_q3_tried - part_of_one_plus_cos_q3_tried_2)*slope_reach_tried
         )
         if both_q3_tried > 0.0:
             sum_q3_tried = both_q3_tried
@@ -571,16 +600,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         else:
             sum_q3_tried = 1.0
             slope_sum_q3_tried = 0.0
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/sum_q3_tried
+        one_by_sum_q3_tried = 1.0/sum_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_q3_tried
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
         root_of_sin_swing_q3_tried = (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
-        sin_swing_q3_tried = 2.0*root_of_sin_swing_q3_tried*sign_elbow_tried/sum_q3_tried
-        cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
-        sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
+        sin_swing_q3_tried = 2.0*one_by_sum_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
+        cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
+        sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
             (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried - slope_sum_q3_tried*cos_swing_q3_tried)
-            /sum_q3_tried
+            *one_by_sum_q3_tried
         )
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
@@ -592,21 +622,22 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
         slope_sin_swing_q3_tried = (
             (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_sum_q3_tried*sin_swing_q3_tried)
-            /sum_q3_tried
+            *one_by_sum_q3_tried
         )
         slope_cos_q3_tried = (
-            a3*slope_cos_swing_q3_tried/effective_q3_tried + d4*slope_sin_swing_q3_tried/effective_q3_tried
+            a3_by_effective_q3_tried*slope_cos_swing_q3_tried + d4_by_effective_q3_tried*slope_sin_swing_q3_tried
         )
         slope_sin_q3_tried = (
-            a3*slope_sin_swing_q3_tried/effective_q3_tried - d4*slope_cos_swing_q3_tried/effective_q3_tried
+            a3_by_effective_q3_tried*slope_sin_swing_q3_tried - d4_by_effective_q3_tried*slope_cos_swing_q3_tried
         )
         # its reference where it is free
-        if freed != 1 and reach_tried > 1e-11*machine_scale:
+        if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
             arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
             # q2: linear pair in the x_from_q1 and z_from_q1 equations
             along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
             across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
+            part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
             slope_arm_along_q2_tried = a3*slope_sin_q3_tried + d4*slope_cos_q3_tried
             slope_arm_across_q2_tried = a3*slope_cos_q3_tried - d4*slope_sin_q3_tried
             slope_along_q2_tried = (
@@ -617,12 +648,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 arm_across_q2_tried*slope_wrist_x_from_q1_tried + slope_arm_across_q2_tried*wrist_x_from_q1_tried
                 - arm_along_q2_tried*slope_wrist_z_tried - slope_arm_along_q2_tried*wrist_z_from_q1_tried
             )
-            if reach_tried > 1e-11*machine_scale and across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried > 0.0:
-                root_of_length_q2_tried = sqrt(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried)
+            if part_of_length_q2_tried > 0.0 and reach_tried > machine_scale_times_free_angle:
+                root_of_length_q2_tried = (sqrt(part_of_length_q2_tried) if part_of_length_q2_tried > 0.0 else 0.0)
                 length_q2_tried = root_of_length_q2_tried
                 slope_root_of_length_q2_tried = (
-                    0.5*(
-                        2.0*across_q2_tried*slope_across_q2_tried + 2.0*along_q2_tried*slope_along_q2_tried
+                    (
+                        across_q2_tried*slope_across_q2_tried + along_q2_tried*slope_along_q2_tried
                     )/(root_of_length_q2_tried if root_of_length_q2_tried > 0.0 else 1.0)
                     if root_of_length_q2_tried > 0.0
                     else 0.0
@@ -631,23 +662,24 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else:
                 length_q2_tried = 1.0
                 slope_length_q2_tried = 0.0
-            cos_q2_tried = along_q2_tried/length_q2_tried
-            sin_q2_tried = across_q2_tried/length_q2_tried
-            slope_cos_q2_tried = (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)/length_q2_tried
-            slope_sin_q2_tried = (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)/length_q2_tried
+            one_by_length_q2_tried = 1.0/length_q2_tried
+            cos_q2_tried = along_q2_tried*one_by_length_q2_tried
+            sin_q2_tried = across_q2_tried*one_by_length_q2_tried
+            slope_cos_q2_tried = (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)*one_by_length_q2_tried
+            slope_sin_q2_tried = (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)*one_by_length_q2_tried
         else:
             chosen_q2 = freed_angle if freed == 1 else free_a2  # q2, where it is free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
             slope_cos_q2_tried = 0.0
             slope_sin_q2_tried = 0.0
+        r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried
         sin_q23_tried = cos_q2_tried*sin_q3_tried + cos_q3_tried*sin_q2_tried
         cos_q23_tried = cos_q2_tried*cos_q3_tried - sin_q2_tried*sin_q3_tried
         r11_from_q123_tried = r11_from_q1_tried*cos_q23_tried - goal_r31*sin_q23_tried
         r12_from_q1_tried = goal_r12*cos_q1_tried + goal_r22*sin_q1_tried
         r12_from_q123_tried = r12_from_q1_tried*cos_q23_tried - goal_r32*sin_q23_tried
         r12_from_q123_before_q6_tried = r12_from_q123_tried*cos_q6_tried + r11_from_q123_tried*sin_q6_tried
-        residual_tried = -r12_from_q123_before_q6_tried
         slope_r11_from_q1_tried = goal_r11*slope_cos_q1_tried + goal_r21*slope_sin_q1_tried
         slope_sin_q23_tried = (
             slope_sin_q3_tried*cos_q2_tried + slope_sin_q2_tried*cos_q3_tried + slope_cos_q3_tried*sin_q2_tried
@@ -667,15 +699,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             - goal_r32*slope_sin_q23_tried
         )
         slope_r12_from_q123_before_q6_tried = (
-            slope_r12_from_q123_tried*cos_q6_tried + r11_from_q123_tried*slope_sin_q6_tried
-            + r12_from_q123_tried*slope_cos_q6_tried + slope_r11_from_q123_tried*sin_q6_tried
+            (r11_from_q123_tried + slope_r12_from_q123_tried)*cos_q6_tried
+            + (slope_r11_from_q123_tried - r12_from_q123_tried)*sin_q6_tried
         )
-        slope_residual_tried = -slope_r12_from_q123_before_q6_tried
-        guard = 1e-12 + sine_square_q3_tried/(swing_scale_q3_tried*swing_scale_q3_tried)
-        slope_guard = slope_sine_square_q3_tried/(swing_scale_q3_tried*swing_scale_q3_tried)
+        guard = 1e-12 + sine_square_q3_tried/swing_scale_q3_tried_squared
+        slope_guard = slope_sine_square_q3_tried/swing_scale_q3_tried_squared
         return (
-            residual_tried, slope_residual_tried, guard, slope_guard, cos_q1_tried, sin_q1_tried, cos_q2_tried,
-            sin_q2_tried,
+            -r12_from_q123_before_q6_tried, -slope_r12_from_q123_before_q6_tried, guard, slope_guard, cos_q1_tried,
+            sin_q1_tried, cos_q2_tried, sin_q2_tried,
         )
 
     def _finish_root(self, given: Values) -> Values | Status:
@@ -688,24 +719,30 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         k = self._constants
         a1 = k.a1
         a2 = k.a2
+        a2_minus_effective_q3_tried = k.a2_minus_effective_q3_tried
+        a2_plus_effective_q3_tried = k.a2_plus_effective_q3_tried
         a3 = k.a3
+        a3_by_effective_q3_tried = k.a3_by_effective_q3_tried
         d1 = k.d1
         d4 = k.d4
+        d4_by_effective_q3_tried = k.d4_by_effective_q3_tried
         d6 = k.d6
-        effective_q3_tried = k.effective_q3_tried
         j6_offset_x = k.j6_offset_x
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        one_by_machine_scale = k.one_by_machine_scale
+        part_of_fits = k.part_of_fits
+        size_of_j6_offset_x = k.size_of_j6_offset_x
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # the point that the last joints turn about
-        wrist_x_tried = goal_x + goal_r12*j6_offset_x*sin_q6_tried - d6*goal_r13 - goal_r11*j6_offset_x*cos_q6_tried
-        wrist_y_tried = goal_y + goal_r22*j6_offset_x*sin_q6_tried - d6*goal_r23 - goal_r21*j6_offset_x*cos_q6_tried
+        wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*j6_offset_x - d6*goal_r13
+        wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*j6_offset_x - d6*goal_r23
         # q1: of the point from its axis
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
         # its reference where it is free
-        if freed != 0 and distance_q1_tried > 1e-11*machine_scale:
+        if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
             along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
-            length_q1_tried = distance_q1_tried if distance_q1_tried > 1e-11*machine_scale else 1.0
+            length_q1_tried = distance_q1_tried if distance_q1_tried > machine_scale_times_free_angle else 1.0
             cos_q1_tried = along_q1_tried/length_q1_tried
             across_q1_tried = wanted_shoulder*wrist_y_tried
             sin_q1_tried = across_q1_tried/length_q1_tried
@@ -715,13 +752,15 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             sin_q1_tried = sin(chosen_q1)
         # what the unknown links must span
         wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
-        wrist_z_tried = goal_z + goal_r32*j6_offset_x*sin_q6_tried - d6*goal_r33 - goal_r31*j6_offset_x*cos_q6_tried
+        wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*j6_offset_x - d6*goal_r33
         wrist_z_from_q1_tried = wrist_z_tried - d1  # what the unknown links must span
         reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
         # 1 - cosine, times the scale
-        one_less_cos_q3_tried = (a2 + effective_q3_tried + reach_tried)*(a2 + effective_q3_tried - reach_tried)
+        one_less_cos_q3_tried = (a2_plus_effective_q3_tried + reach_tried)*(a2_plus_effective_q3_tried - reach_tried)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = (effective_q3_tried + reach_tried - a2)*(a2 + reach_tried - effective_q3_tried)
+        one_plus_cos_q3_tried = (
+            (reach_tried - a2_minus_effective_q3_tried)*(a2_minus_effective_q3_tried + reach_tried)
+        )
         # twice the scale, with the rounding of its parts
         both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         sum_q3_tried = both_q3_tried if both_q3_tried > 0.0 else 1.0
@@ -731,20 +770,19 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sin_swing_q3_tried = (
             2.0*(sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)*sign_elbow_tried/sum_q3_tried
         )
-        cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
-        sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
+        cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
+        sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
         # its reference where it is free
-        if freed != 1 and reach_tried > 1e-11*machine_scale:
+        if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
             arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
             # q2: linear pair in the x_from_q1 and z_from_q1 equations
             along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
             across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
+            part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
             length_q2_tried = (
-                sqrt(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried)
-                if (reach_tried > 1e-11*machine_scale) and (
-                    across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried > 0.0
-                )
+                (sqrt(part_of_length_q2_tried) if part_of_length_q2_tried > 0.0 else 0.0)
+                if (part_of_length_q2_tried > 0.0) and (reach_tried > machine_scale_times_free_angle)
                 else 1.0
             )
             cos_q2_tried = along_q2_tried/length_q2_tried
@@ -782,10 +820,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
         for _ in range(4):
             cos_q1 = cos(q1)
-            cos_q23 = cos(q2 + q3)
+            q2_plus_q3 = q2 + q3
+            cos_q23 = cos(q2_plus_q3)
             r11_at_q23 = cos_q1*cos_q23
             sin_q1 = sin(q1)
-            sin_q23 = sin(q2 + q3)
+            sin_q23 = sin(q2_plus_q3)
             r13_at_q23 = cos_q1*sin_q23
             sin_q4 = sin(q4)
             cos_q4 = cos(q4)
@@ -801,7 +840,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
             x_at_q6 = x_at_q4 + j6_offset_x*r11_at_q5
             x = x_at_q6 + d6*r13_at_q5
-            error_1 = (goal_x - x)/machine_scale
+            error_1 = (goal_x - x)*one_by_machine_scale
             r21_at_q23 = cos_q23*sin_q1
             r23_at_q23 = sin_q1*sin_q23
             r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4
@@ -813,7 +852,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
             y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
             y = y_at_q6 + d6*r23_at_q5
-            error_2 = (goal_y - y)/machine_scale
+            error_2 = (goal_y - y)*one_by_machine_scale
             r33_at_q4 = cos_q23*cos_q4
             r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
             cos_q2 = cos(q2)
@@ -822,7 +861,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
             z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
             z = z_at_q6 + d6*r33_at_q5
-            error_3 = (goal_z - z)/machine_scale
+            error_3 = (goal_z - z)*one_by_machine_scale
             r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
             sin_q6 = sin(q6)
             cos_q6 = cos(q6)
@@ -832,62 +871,75 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
             r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
             error_4 = (
-                0.5*goal_r31*r21_at_q6 + 0.5*goal_r32*r22_at_q6 + 0.5*goal_r33*r23_at_q5 - 0.5*goal_r21*r31_at_q6
-                - 0.5*goal_r22*r32_at_q6 - 0.5*goal_r23*r33_at_q5
+                0.5
+                *(
+                    goal_r31*r21_at_q6 + goal_r32*r22_at_q6 + goal_r33*r23_at_q5 - goal_r21*r31_at_q6 - goal_r22*r32_at_q6
+                    - goal_r23*r33_at_q5
+                )
             )
             r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
             r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
             r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
             error_5 = (
-                0.5*goal_r11*r31_at_q6 + 0.5*goal_r12*r32_at_q6 + 0.5*goal_r13*r33_at_q5 - 0.5*goal_r31*r11_at_q6
-                - 0.5*goal_r32*r12_at_q6 - 0.5*goal_r33*r13_at_q5
+                -0.5
+                *(
+                    goal_r31*r11_at_q6 + goal_r32*r12_at_q6 + goal_r33*r13_at_q5 - goal_r11*r31_at_q6 - goal_r12*r32_at_q6
+                    - goal_r13*r33_at_q5
+                )
             )
             error_6 = (
-                0.5*goal_r21*r11_at_q6 + 0.5*goal_r22*r12_at_q6 + 0.5*goal_r23*r13_at_q5 - 0.5*goal_r11*r21_at_q6
-                - 0.5*goal_r12*r22_at_q6 - 0.5*goal_r13*r23_at_q5
+                0.5
+                *(
+                    goal_r21*r11_at_q6 + goal_r22*r12_at_q6 + goal_r23*r13_at_q5 - goal_r11*r21_at_q6 - goal_r12*r22_at_q6
+                    - goal_r13*r23_at_q5
+                )
             )
             # of the pose, in lengths of the machine and radians
             error = sqrt(
                 error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4 + error_5*error_5 + error_6*error_6
             )
-            rate_1_1 = -y/machine_scale
-            rate_2_1 = x/machine_scale
-            rate_1_2 = (z - d1)*cos_q1/machine_scale
-            rate_1_3 = (z - z_at_q3)*cos_q1/machine_scale
-            rate_1_4 = (r21_at_q23*(z - z_at_q4) + (y - y_at_q4)*sin_q23)/machine_scale
-            rate_1_5 = (r22_at_q4*(z - z_at_q4) - r32_at_q4*(y - y_at_q4))/machine_scale
-            rate_1_6 = (r23_at_q5*(z - z_at_q6) - r33_at_q5*(y - y_at_q6))/machine_scale
+            rate_1_1 = -one_by_machine_scale*y
+            rate_2_1 = one_by_machine_scale*x
+            z_minus_d1 = z - d1
+            cos_q1_times_one_by_machine_scale = one_by_machine_scale*cos_q1
+            rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q3 = z - z_at_q3
+            rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q4 = z - z_at_q4
+            y_minus_y_at_q4 = y - y_at_q4
+            rate_1_4 = one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23)
+            rate_1_5 = one_by_machine_scale*(r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4)
+            z_minus_z_at_q6 = z - z_at_q6
+            y_minus_y_at_q6 = y - y_at_q6
+            rate_1_6 = one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6)
             product_1_1 = (
                 1e-12 + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4 + rate_1_5*rate_1_5
                 + rate_1_6*rate_1_6
             )
-            rate_2_2 = (z - d1)*sin_q1/machine_scale
-            rate_2_3 = (z - z_at_q3)*sin_q1/machine_scale
-            rate_2_4 = (-r11_at_q23*(z - z_at_q4) - (x - x_at_q4)*sin_q23)/machine_scale
-            rate_2_5 = (r32_at_q4*(x - x_at_q4) - r12_at_q4*(z - z_at_q4))/machine_scale
-            rate_2_6 = (r33_at_q5*(x - x_at_q6) - r13_at_q5*(z - z_at_q6))/machine_scale
+            sin_q1_times_one_by_machine_scale = one_by_machine_scale*sin_q1
+            rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale
+            rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale
+            x_minus_x_at_q4 = x - x_at_q4
+            rate_2_4 = (-r11_at_q23*z_minus_z_at_q4 - x_minus_x_at_q4*sin_q23)*one_by_machine_scale
+            rate_2_5 = (r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4)*one_by_machine_scale
+            x_minus_x_at_q6 = x - x_at_q6
+            rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*one_by_machine_scale
             product_1_2 = (
                 rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4 + rate_1_5*rate_2_5
                 + rate_1_6*rate_2_6
             )
-            rate_3_2 = (-(x - x_at_q2)*cos_q1 - (y - y_at_q2)*sin_q1)/machine_scale
-            rate_3_3 = (-(x - x_at_q3)*cos_q1 - (y - y_at_q3)*sin_q1)/machine_scale
-            rate_3_4 = (r11_at_q23*(y - y_at_q4) - r21_at_q23*(x - x_at_q4))/machine_scale
-            rate_3_5 = (r12_at_q4*(y - y_at_q4) - r22_at_q4*(x - x_at_q4))/machine_scale
-            rate_3_6 = (r13_at_q5*(y - y_at_q6) - r23_at_q5*(x - x_at_q6))/machine_scale
+            rate_3_2 = one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1)
+            rate_3_3 = one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1)
+            rate_3_4 = one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4)
+            rate_3_5 = one_by_machine_scale*(r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4)
+            rate_3_6 = one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6)
             product_1_3 = (
                 rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5 + rate_1_6*rate_3_6
             )
-            rate_4_2 = -sin_q1
-            rate_4_3 = -sin_q1
-            product_1_4 = (
-                r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 + rate_1_2*rate_4_2 + rate_1_3*rate_4_3
-            )
-            product_1_5 = (
-                rate_1_2*cos_q1 + rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6
-            )
-            rate_6_4 = -sin_q23
-            product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 + rate_1_4*rate_6_4
+            rate_1_2_plus_rate_1_3 = -rate_1_2 - rate_1_3
+            product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 + rate_1_2_plus_rate_1_3*sin_q1
+            product_1_5 = r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6 - rate_1_2_plus_rate_1_3*cos_q1
+            product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23
             product_2_2 = (
                 1e-12 + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4 + rate_2_5*rate_2_5
                 + rate_2_6*rate_2_6
@@ -895,34 +947,23 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             product_2_3 = (
                 rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5 + rate_2_6*rate_3_6
             )
-            product_2_4 = (
-                r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 + rate_2_2*rate_4_2 + rate_2_3*rate_4_3
-            )
-            product_2_5 = (
-                rate_2_2*cos_q1 + rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6
-            )
-            product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 + rate_2_4*rate_6_4
+            rate_2_2_plus_rate_2_3 = -rate_2_2 - rate_2_3
+            product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 + rate_2_2_plus_rate_2_3*sin_q1
+            product_2_5 = r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6 - rate_2_2_plus_rate_2_3*cos_q1
+            product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23
             product_3_3 = (
                 1e-12 + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5 + rate_3_6*rate_3_6
             )
-            product_3_4 = (
-                r11_at_q23*rate_3_4 + r12_at_q4*rate_3_5 + r13_at_q5*rate_3_6 + rate_3_2*rate_4_2 + rate_3_3*rate_4_3
-            )
-            product_3_5 = (
-                rate_3_2*cos_q1 + rate_3_3*cos_q1 + r21_at_q23*rate_3_4 + r22_at_q4*rate_3_5 + r23_at_q5*rate_3_6
-            )
-            product_3_6 = r32_at_q4*rate_3_5 + r33_at_q5*rate_3_6 + rate_3_4*rate_6_4
-            product_4_4 = (
-                1e-12 + r11_at_q23*r11_at_q23 + r12_at_q4*r12_at_q4 + r13_at_q5*r13_at_q5 + rate_4_2*rate_4_2
-                + rate_4_3*rate_4_3
-            )
-            product_4_5 = (
-                rate_4_2*cos_q1 + rate_4_3*cos_q1 + r11_at_q23*r21_at_q23 + r12_at_q4*r22_at_q4 + r13_at_q5*r23_at_q5
-            )
-            product_4_6 = r11_at_q23*rate_6_4 + r12_at_q4*r32_at_q4 + r13_at_q5*r33_at_q5
+            rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
+            product_3_4 = r11_at_q23*rate_3_4 + r12_at_q4*rate_3_5 + r13_at_q5*rate_3_6 - rate_3_2_plus_rate_3_3*sin_q1
+            product_3_5 = rate_3_2_plus_rate_3_3*cos_q1 + r21_at_q23*rate_3_4 + r22_at_q4*rate_3_5 + r23_at_q5*rate_3_6
+            product_3_6 = r32_at_q4*rate_3_5 + r33_at_q5*rate_3_6 - rate_3_4*sin_q23
+            product_4_4 = 1e-12 + r11_at_q23*r11_at_q23 + r12_at_q4*r12_at_q4 + r13_at_q5*r13_at_q5 + 2.0*sin_q1*sin_q1
+            product_4_5 = r11_at_q23*r21_at_q23 + r12_at_q4*r22_at_q4 + r13_at_q5*r23_at_q5 - 2.0*cos_q1*sin_q1
+            product_4_6 = r12_at_q4*r32_at_q4 + r13_at_q5*r33_at_q5 - r11_at_q23*sin_q23
             product_5_5 = 1e-12 + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4 + r23_at_q5*r23_at_q5
-            product_5_6 = r21_at_q23*rate_6_4 + r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5
-            product_6_6 = 1.000000000001 + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + rate_6_4*rate_6_4
+            product_5_6 = r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5 - r21_at_q23*sin_q23
+            product_6_6 = 1.000000000001 + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23
             # of the shortest step that lets the error vanish
             _, share_1, share_2, share_3, share_4, share_5, share_6 = solve(
                 (
@@ -936,11 +977,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
             )
             step_q1 = share_6 + rate_1_1*share_1 + rate_2_1*share_2
-            step_q2 = share_5*cos_q1 + rate_1_2*share_1 + rate_2_2*share_2 + rate_3_2*share_3 + rate_4_2*share_4
-            step_q3 = share_5*cos_q1 + rate_1_3*share_1 + rate_2_3*share_2 + rate_3_3*share_3 + rate_4_3*share_4
+            part_of_step_q2 = share_5*cos_q1 - share_4*sin_q1
+            step_q2 = part_of_step_q2 + rate_1_2*share_1 + rate_2_2*share_2 + rate_3_2*share_3
+            step_q3 = part_of_step_q2 + rate_1_3*share_1 + rate_2_3*share_2 + rate_3_3*share_3
             step_q4 = (
                 r11_at_q23*share_4 + r21_at_q23*share_5 + rate_1_4*share_1 + rate_2_4*share_2 + rate_3_4*share_3
-                + rate_6_4*share_6
+                - share_6*sin_q23
             )
             step_q5 = (
                 r12_at_q4*share_4 + r22_at_q4*share_5 + r32_at_q4*share_6 + rate_1_5*share_1 + rate_2_5*share_2
@@ -971,20 +1013,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 (rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6),
                 (rate_2_1, rate_2_2, rate_2_3, rate_2_4, rate_2_5, rate_2_6),
                 (0.0, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6),
-                (0.0, rate_4_2, rate_4_3, r11_at_q23, r12_at_q4, r13_at_q5),
+                (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
                 (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
-                (1.0, 0.0, 0.0, rate_6_4, r32_at_q4, r33_at_q5),
+                (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
             ),
             (),
         )
         fits = (
-            (error <= 1e-10) and ((sin(q4) if abs(j6_offset_x) > 0.0 else cos(q5))*wanted_wrist >= -1e-6)
-            and (wanted_elbow*(a3*sin(q3) + cos(q3)*d4)/machine_scale >= -1e-6)
-            and (wanted_shoulder*(a1 + a2*sin(q2) + a3*sin(q2 + q3) + cos(q2 + q3)*d4)/machine_scale >= -1e-6)
-            and (
-                -0.5*(wanted_crossing*wanted_elbow*wanted_shoulder)*determinant*machine_scale*machine_scale
-                /(sqrt(a3*a3 + d4*d4)*a2) >= -1e-6
-            )
+            (error <= 1e-10) and ((sin_q4 if size_of_j6_offset_x > 0.0 else cos_q5)*wanted_wrist >= -1e-6)
+            and (-(wanted_crossing*wanted_elbow*wanted_shoulder)*determinant*part_of_fits >= -1e-6)
+            and (wanted_elbow*(a3*sin(q3) + cos(q3)*d4)*one_by_machine_scale >= -1e-6)
+            and (wanted_shoulder*(a1 + a2*sin_q2 + a3*sin_q23 + d4*cos_q23)*one_by_machine_scale >= -1e-6)
         )
         return (fits, q1, q2, q3, q4, q5, q6)
 
@@ -1114,21 +1153,19 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         d6 = k.d6
         effective_q3_tried = k.effective_q3_tried
         j6_offset_x = k.j6_offset_x
-        machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
+        one_by_machine_scale = k.one_by_machine_scale
+        part_of_fits = k.part_of_fits
         searched = k.searched
+        size_of_j6_offset_x = k.size_of_j6_offset_x
         # numbers of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9 and -1e9 <= axis_a1 <= 1e9
-            and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9 and -1e9 <= axis_a1 <= 1e9
-            and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
@@ -1136,10 +1173,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         cos_q1 = cos(q1)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        cos_q23 = cos(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
         r11_at_q23 = cos_q1*cos_q23
         sin_q1 = sin(q1)
-        sin_q23 = sin(q2 + q3)
+        sin_q23 = sin(q2_plus_q3)
         r13_at_q23 = cos_q1*sin_q23
         q4 = DEGREE*(axis_a4 - offset_a4)
         sin_q4 = sin(q4)
@@ -1156,7 +1194,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         x_at_q4 = x_at_q3 + a3*r13_at_q23 + d4*r11_at_q23
         r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
         x_at_q6 = x_at_q4 + j6_offset_x*r11_at_q5
-        x = x_at_q6 + d6*r13_at_q5
+        d6_times_r13_at_q5 = d6*r13_at_q5
+        x = d6_times_r13_at_q5 + x_at_q6
         r21_at_q23 = cos_q23*sin_q1
         r23_at_q23 = sin_q1*sin_q23
         r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4
@@ -1167,72 +1206,55 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         y_at_q4 = y_at_q3 + a3*r23_at_q23 + d4*r21_at_q23
         r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
         y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
-        y = y_at_q6 + d6*r23_at_q5
+        d6_times_r23_at_q5 = d6*r23_at_q5
+        y = d6_times_r23_at_q5 + y_at_q6
         r33_at_q4 = cos_q23*cos_q4
         r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
+        r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
+        r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
+        r32_at_q4 = cos_q23*sin_q4
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2*cos_q2
         z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
         r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
         z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
         z = z_at_q6 + d6*r33_at_q5
-        r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
-        q6 = DEGREE*(axis_a6 - offset_a6)
-        sin_q6 = sin(q6)
-        cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
-        r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
-        r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
-        r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
-        r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
-        r32_at_q4 = cos_q23*sin_q4
-        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
-        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        # the point that the last joints turn about
-        wrist_x_tried = x + j6_offset_x*r12_at_q6*sin_q6 - d6*r13_at_q5 - j6_offset_x*r11_at_q6*cos_q6
-        wrist_y_tried = y + j6_offset_x*r22_at_q6*sin_q6 - d6*r23_at_q5 - j6_offset_x*r21_at_q6*cos_q6
-        margin_shoulder_tried = (wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)/machine_scale
-        sin_q3_tried = sin(q3)
-        cos_q3_tried = cos(q3)
-        margin_elbow_tried = (a3*sin_q3_tried + d4*cos_q3_tried)/effective_q3_tried
-        if searched:
-            branch_shoulder = margin_shoulder_tried
-            branch_elbow = margin_elbow_tried
-            branch_wrist = (sin_q4 if abs(j6_offset_x) > 0.0 else cos_q5)/machine_scale
-        else:
-            wrist_x_closed = x - d6*r13_at_q5  # the point that the last joints turn about
-            wrist_y_closed = y - d6*r23_at_q5
-            margin_shoulder_closed = (wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)/machine_scale
-            branch_shoulder = margin_shoulder_closed
-            sin_q3_closed = sin(q3)
-            cos_q3_closed = cos(q3)
-            margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_tried
-            branch_elbow = margin_elbow_closed
-            branch_wrist = cos_q5
+        z_minus_d1 = z - d1
+        z_minus_z_at_q3 = z - z_at_q3
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q6 = x - x_at_q6
+        cos_q1_times_one_by_machine_scale = one_by_machine_scale*cos_q1
+        sin_q1_times_one_by_machine_scale = one_by_machine_scale*sin_q1
         # of the Jacobian, its positions in lengths of the machine
         (determinant,) = solve(
             (
                 (
-                    -y/machine_scale, (z - d1)*cos_q1/machine_scale, (z - z_at_q3)*cos_q1/machine_scale,
-                    (r21_at_q23*(z - z_at_q4) + (y - y_at_q4)*sin_q23)/machine_scale,
-                    (r22_at_q4*(z - z_at_q4) - r32_at_q4*(y - y_at_q4))/machine_scale,
-                    (r23_at_q5*(z - z_at_q6) - r33_at_q5*(y - y_at_q6))/machine_scale,
+                    -one_by_machine_scale*y,
+                    z_minus_d1*cos_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3*cos_q1_times_one_by_machine_scale,
+                    one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23),
+                    one_by_machine_scale*(r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4),
+                    one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6),
                 ),
                 (
-                    x/machine_scale,
-                    (z - d1)*sin_q1/machine_scale,
-                    (z - z_at_q3)*sin_q1/machine_scale,
-                    (-r11_at_q23*(z - z_at_q4) - (x - x_at_q4)*sin_q23)/machine_scale,
-                    (r32_at_q4*(x - x_at_q4) - r12_at_q4*(z - z_at_q4))/machine_scale,
-                    (r33_at_q5*(x - x_at_q6) - r13_at_q5*(z - z_at_q6))/machine_scale,
+                    one_by_machine_scale*x,
+                    z_minus_d1*sin_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3*sin_q1_times_one_by_machine_scale,
+                    (-r11_at_q23*z_minus_z_at_q4 - x_minus_x_at_q4*sin_q23)*one_by_machine_scale,
+                    (r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4)*one_by_machine_scale,
+                    (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*one_by_machine_scale,
                 ),
                 (
                     0.0,
-                    (-(x - x_at_q2)*cos_q1 - (y - y_at_q2)*sin_q1)/machine_scale,
-                    (-(x - x_at_q3)*cos_q1 - (y - y_at_q3)*sin_q1)/machine_scale,
-                    (r11_at_q23*(y - y_at_q4) - r21_at_q23*(x - x_at_q4))/machine_scale,
-                    (r12_at_q4*(y - y_at_q4) - r22_at_q4*(x - x_at_q4))/machine_scale,
-                    (r13_at_q5*(y - y_at_q6) - r23_at_q5*(x - x_at_q6))/machine_scale,
+                    one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1),
+                    one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1),
+                    one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4),
+                    one_by_machine_scale*(r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4),
+                    one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6),
                 ),
                 (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
                 (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
@@ -1240,19 +1262,40 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             ),
             (),
         )
-        branch_crossing = (
-            -0.5*(1.0 if margin_elbow_tried >= 0.0 else -1.0)*(
-                1.0
-                if margin_shoulder_tried >= 0.0
-                else -1.0
-            )*determinant*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
-            if searched
-            else 1.0
-        )
+        q6 = DEGREE*(axis_a6 - offset_a6)
+        sin_q6 = sin(q6)
+        cos_q6 = cos(q6)
+        r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
+        r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
+        r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
+        r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
+        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
+        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
+        wrist_x_closed = x - d6_times_r13_at_q5  # the point that the last joints turn about
+        wrist_y_closed = y - d6_times_r23_at_q5
+        sin_q3_closed = sin(q3)
+        cos_q3_closed = cos(q3)
+        margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_tried
+        if searched:
+            # the point that the last joints turn about
+            wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*j6_offset_x
+            wrist_y_tried = wrist_y_closed + (r22_at_q6*sin_q6 - r21_at_q6*cos_q6)*j6_offset_x
+            margin_shoulder_tried = one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)
+            branch_shoulder = margin_shoulder_tried
+            branch_wrist = (sin_q4 if size_of_j6_offset_x > 0.0 else cos_q5)*one_by_machine_scale
+            branch_crossing = (
+                -(1.0 if margin_elbow_closed >= 0.0 else -1.0)*(1.0 if margin_shoulder_tried >= 0.0 else -1.0)*determinant
+                *part_of_fits
+            )
+        else:
+            margin_shoulder_closed = one_by_machine_scale*(wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)
+            branch_shoulder = margin_shoulder_closed
+            branch_wrist = cos_q5
+            branch_crossing = 1.0
         return (
             (x, y, z),
             ((r11_at_q6, r12_at_q6, r13_at_q5), (r21_at_q6, r22_at_q6, r23_at_q5), (r31_at_q6, r32_at_q6, r33_at_q5)),
-            (branch_shoulder, branch_elbow, branch_wrist, branch_crossing),
+            (branch_shoulder, margin_elbow_closed, branch_wrist, branch_crossing),
         )
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
@@ -1276,13 +1319,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         cos_q1 = cos(q1)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        sin_q23 = sin(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        sin_q23 = sin(q2_plus_q3)
         r13_at_q23 = cos_q1*sin_q23
         q4 = DEGREE*(axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
         r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
-        cos_q23 = cos(q2 + q3)
+        cos_q23 = cos(q2_plus_q3)
         r11_at_q23 = cos_q1*cos_q23
         r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4
         q5 = DEGREE*(axis_a5 - offset_a5)
@@ -1327,12 +1371,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         k = self._constants
         a1 = k.a1
         a2 = k.a2
-        a3 = k.a3
+        a2_minus_effective_q3_tried = k.a2_minus_effective_q3_tried
+        a2_plus_effective_q3_tried = k.a2_plus_effective_q3_tried
+        a3_by_effective_q3_tried = k.a3_by_effective_q3_tried
         d1 = k.d1
-        d4 = k.d4
+        d4_by_effective_q3_tried = k.d4_by_effective_q3_tried
         d6 = k.d6
         effective_q3_tried = k.effective_q3_tried
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -1345,6 +1391,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
+        part_of_constant = k.part_of_constant
         searched = k.searched
         single_a1 = k.single_a1
         single_a2 = k.single_a2
@@ -1352,7 +1399,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
-        swing_scale_q3_tried = k.swing_scale_q3_tried
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -1373,16 +1419,22 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
         # 1 - cosine, times the scale
-        one_less_cos_q3_closed = (a2 + effective_q3_tried + reach_closed)*(a2 + effective_q3_tried - reach_closed)
+        one_less_cos_q3_closed = (
+            (a2_plus_effective_q3_tried + reach_closed)*(a2_plus_effective_q3_tried - reach_closed)
+        )
         # 1 + cosine, times the scale
-        one_plus_cos_q3_closed = (effective_q3_tried + reach_closed - a2)*(a2 + reach_closed - effective_q3_tried)
+        one_plus_cos_q3_closed = (
+            (reach_closed - a2_minus_effective_q3_tried)*(a2_minus_effective_q3_tried + reach_closed)
+        )
         sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
         # q3: out of reach
-        if not (searched or (sine_square_q3_closed >= -1e-12*swing_scale_q3_tried*swing_scale_q3_tried)):
+        if not (searched or (sine_square_q3_closed >= -part_of_constant)):
             missing = (
-                0.5*abs(effective_q3_tried + reach_closed - a2) + 0.5*abs(a2 + reach_closed - effective_q3_tried)
-                + 0.5*abs(a2 + effective_q3_tried - reach_closed) + 0.5*abs(a2 + effective_q3_tried + reach_closed) - a2
-                - effective_q3_tried - reach_closed
+                0.5*(
+                    abs(a2_minus_effective_q3_tried - reach_closed) + abs(a2_minus_effective_q3_tried + reach_closed)
+                    + abs(a2_plus_effective_q3_tried - reach_closed) + abs(a2_plus_effective_q3_tried + reach_closed)
+                )
+                - a2_plus_effective_q3_tried - reach_closed
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # without the offset there is no second crossing
@@ -1413,7 +1465,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q6 = found_q6
         else:
             # its reference where it is free
-            if distance_q1_closed > 1e-11*machine_scale:
+            if distance_q1_closed > machine_scale_times_free_angle:
                 along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
                 cos_q1_closed = along_q1_closed/distance_q1_closed
                 across_q1_closed = sigma_shoulder*wrist_y_closed
@@ -1430,25 +1482,22 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/sum_q3_closed
             # its reference where it is free
-            if reach_closed > 1e-11*machine_scale:
+            if reach_closed > machine_scale_times_free_angle:
                 arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed
                 arm_across_q2_closed = a2 + effective_q3_tried*cos_swing_q3_closed
                 # q2: linear pair in the x_from_q1 and z_from_q1 equations
                 along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
                 across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
-                length_q2_closed = (
-                    sqrt(across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed)
-                    if across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed > 0.0
-                    else 1.0
-                )
+                part_of_length_q2_closed = across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed
+                length_q2_closed = sqrt(part_of_length_q2_closed) if part_of_length_q2_closed > 0.0 else 1.0
                 cos_q2_closed = along_q2_closed/length_q2_closed
                 sin_q2_closed = across_q2_closed/length_q2_closed
             else:
                 cos_q2_closed = cos(free_a2)
                 sin_q2_closed = sin(free_a2)
             q2 = arctan2(sin_q2_closed + 0.0, cos_q2_closed + 0.0)
-            cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_tried + d4*sin_swing_q3_closed/effective_q3_tried
-            sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_tried - d4*cos_swing_q3_closed/effective_q3_tried
+            cos_q3_closed = a3_by_effective_q3_tried*cos_swing_q3_closed + d4_by_effective_q3_tried*sin_swing_q3_closed
+            sin_q3_closed = a3_by_effective_q3_tried*sin_swing_q3_closed - d4_by_effective_q3_tried*cos_swing_q3_closed
             q3 = arctan2(sin_q3_closed + 0.0, cos_q3_closed + 0.0)
             r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
             sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
@@ -1609,12 +1658,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         d4 = k.d4
         d6 = k.d6
         j6_offset_x = k.j6_offset_x
-        machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
+        one_by_machine_scale = k.one_by_machine_scale
+        part_of_fits = k.part_of_fits
         # numbers of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
@@ -1632,22 +1682,18 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         x_at_q3 = x_at_q2 + a2*r13_at_q2
         r23_at_q2 = sin_q1*sin_q2
         y_at_q3 = y_at_q2 + a2*r23_at_q2
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
         q3 = DEGREE*(axis_a3 - offset_a3)
-        sin_q23 = sin(q2 + q3)
-        cos_q23 = cos(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        sin_q23 = sin(q2_plus_q3)
+        cos_q23 = cos(q2_plus_q3)
         r11_at_q23 = cos_q1*cos_q23
         r21_at_q23 = cos_q23*sin_q1
         r13_at_q23 = cos_q1*sin_q23
-        x_at_q4 = x_at_q3 + a3*r13_at_q23 + d4*r11_at_q23
-        r23_at_q23 = sin_q1*sin_q23
-        y_at_q4 = y_at_q3 + a3*r23_at_q23 + d4*r21_at_q23
-        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
         q4 = DEGREE*(axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
         r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
+        r23_at_q23 = sin_q1*sin_q23
         r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
         r32_at_q4 = cos_q23*sin_q4
         r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4
@@ -1659,39 +1705,56 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5
         r33_at_q4 = cos_q23*cos_q4
         r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
+        x_at_q4 = x_at_q3 + a3*r13_at_q23 + d4*r11_at_q23
         r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
         x_at_q6 = x_at_q4 + j6_offset_x*r11_at_q5
+        x = x_at_q6 + d6*r13_at_q5
+        y_at_q4 = y_at_q3 + a3*r23_at_q23 + d4*r21_at_q23
         r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
         y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
+        y = y_at_q6 + d6*r23_at_q5
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2*cos_q2
+        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
         r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
         z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
-        x = x_at_q6 + d6*r13_at_q5
-        y = y_at_q6 + d6*r23_at_q5
         z = z_at_q6 + d6*r33_at_q5
+        z_minus_d1 = z - d1
+        z_minus_z_at_q3 = z - z_at_q3
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q6 = x - x_at_q6
+        cos_q1_times_one_by_machine_scale = one_by_machine_scale*cos_q1
+        sin_q1_times_one_by_machine_scale = one_by_machine_scale*sin_q1
         # of the Jacobian, its positions in lengths of the machine
         (determinant,) = solve(
             (
                 (
-                    -y/machine_scale, (z - d1)*cos_q1/machine_scale, (z - z_at_q3)*cos_q1/machine_scale,
-                    (r21_at_q23*(z - z_at_q4) + (y - y_at_q4)*sin_q23)/machine_scale,
-                    (r22_at_q4*(z - z_at_q4) - r32_at_q4*(y - y_at_q4))/machine_scale,
-                    (r23_at_q5*(z - z_at_q6) - r33_at_q5*(y - y_at_q6))/machine_scale,
+                    -one_by_machine_scale*y,
+                    z_minus_d1*cos_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3*cos_q1_times_one_by_machine_scale,
+                    one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23),
+                    one_by_machine_scale*(r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4),
+                    one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6),
                 ),
                 (
-                    x/machine_scale,
-                    (z - d1)*sin_q1/machine_scale,
-                    (z - z_at_q3)*sin_q1/machine_scale,
-                    (-r11_at_q23*(z - z_at_q4) - (x - x_at_q4)*sin_q23)/machine_scale,
-                    (r32_at_q4*(x - x_at_q4) - r12_at_q4*(z - z_at_q4))/machine_scale,
-                    (r33_at_q5*(x - x_at_q6) - r13_at_q5*(z - z_at_q6))/machine_scale,
+                    one_by_machine_scale*x,
+                    z_minus_d1*sin_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3*sin_q1_times_one_by_machine_scale,
+                    (-r11_at_q23*z_minus_z_at_q4 - x_minus_x_at_q4*sin_q23)*one_by_machine_scale,
+                    (r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4)*one_by_machine_scale,
+                    (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*one_by_machine_scale,
                 ),
                 (
                     0.0,
-                    (-(x - x_at_q2)*cos_q1 - (y - y_at_q2)*sin_q1)/machine_scale,
-                    (-(x - x_at_q3)*cos_q1 - (y - y_at_q3)*sin_q1)/machine_scale,
-                    (r11_at_q23*(y - y_at_q4) - r21_at_q23*(x - x_at_q4))/machine_scale,
-                    (r12_at_q4*(y - y_at_q4) - r22_at_q4*(x - x_at_q4))/machine_scale,
-                    (r13_at_q5*(y - y_at_q6) - r23_at_q5*(x - x_at_q6))/machine_scale,
+                    one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1),
+                    one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1),
+                    one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4),
+                    one_by_machine_scale*(r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4),
+                    one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6),
                 ),
                 (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
                 (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
@@ -1699,7 +1762,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             ),
             (),
         )
-        margin_determinant = 0.5*determinant*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
+        margin_determinant = determinant*part_of_fits
         return (margin_determinant,)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -1728,10 +1791,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sin_q1 = sin(q1)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        cos_q23 = cos(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
         r21_at_q23 = cos_q23*sin_q1
         cos_q1 = cos(q1)
-        sin_q23 = sin(q2 + q3)
+        sin_q23 = sin(q2_plus_q3)
         r23_at_q23 = sin_q1*sin_q23
         q4 = DEGREE*(axis_a4 - offset_a4)
         sin_q4 = sin(q4)
@@ -1751,12 +1815,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         y = y_at_q6 + d6*r23_at_q5
         r33_at_q4 = cos_q23*cos_q4
         r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
-        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
-        z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
-        z = z_at_q6 + d6*r33_at_q5
         r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
         r32_at_q4 = cos_q23*sin_q4
         r11_at_q23 = cos_q1*cos_q23
@@ -1771,30 +1829,36 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         x_at_q6 = x_at_q4 + j6_offset_x*r11_at_q5
         x = x_at_q6 + d6*r13_at_q5
         r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2*cos_q2
+        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
+        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
+        z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
+        z = z_at_q6 + d6*r33_at_q5
+        z_minus_d1 = z - d1
+        z_minus_z_at_q3 = z - z_at_q3
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q6 = x - x_at_q6
         return (
             (
-                -y,
-                (z - d1)*cos_q1,
-                (z - z_at_q3)*cos_q1,
-                r21_at_q23*(z - z_at_q4) + (y - y_at_q4)*sin_q23,
-                r22_at_q4*(z - z_at_q4) - r32_at_q4*(y - y_at_q4),
-                r23_at_q5*(z - z_at_q6) - r33_at_q5*(y - y_at_q6),
+                -y, z_minus_d1*cos_q1, z_minus_z_at_q3*cos_q1, r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23,
+                r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4,
+                r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6,
             ),
             (
-                x,
-                (z - d1)*sin_q1,
-                (z - z_at_q3)*sin_q1,
-                -r11_at_q23*(z - z_at_q4) - (x - x_at_q4)*sin_q23,
-                r32_at_q4*(x - x_at_q4) - r12_at_q4*(z - z_at_q4),
-                r33_at_q5*(x - x_at_q6) - r13_at_q5*(z - z_at_q6),
+                x, z_minus_d1*sin_q1, z_minus_z_at_q3*sin_q1, -r11_at_q23*z_minus_z_at_q4 - x_minus_x_at_q4*sin_q23,
+                r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4,
+                r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6,
             ),
             (
-                0.0,
-                -(x - x_at_q2)*cos_q1 - (y - y_at_q2)*sin_q1,
-                -(x - x_at_q3)*cos_q1 - (y - y_at_q3)*sin_q1,
-                r11_at_q23*(y - y_at_q4) - r21_at_q23*(x - x_at_q4),
-                r12_at_q4*(y - y_at_q4) - r22_at_q4*(x - x_at_q4),
-                r13_at_q5*(y - y_at_q6) - r23_at_q5*(x - x_at_q6),
+                0.0, (x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1, (x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1,
+                r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4,
+                r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4,
+                r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6,
             ),
             (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
             (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),

@@ -28,9 +28,9 @@ Singularities:
     a4_parallel_a6: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 61 additions, 54 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 265 additions, 351 multiplications, 70 divisions, 18 square roots, 28 sines
-    inverse, all 8 branches open: 1889 additions, 2493 multiplications, 497 divisions, 130 square roots, 224 sines
+    forward: 57 additions, 52 multiplications, 7 divisions, 0 square roots, 13 sines
+    inverse: 245 additions, 282 multiplications, 53 divisions, 18 square roots, 26 sines
+    inverse, all 8 branches open: 1729 additions, 1941 multiplications, 361 divisions, 130 square roots, 208 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -127,6 +127,19 @@ class Constants(NamedTuple):
     rounding_q1: float
     scale_q3: float
     size_q1_for_q3: float
+    machine_scale_times_free_angle: float
+    size_q1_for_q3_times_rounding: float
+    part_of_divisor_q6_q1_for_q3: float
+    part_of_highest_q6_q1_for_q3: float
+    machine_scale_squared_times_plane: float
+    machine_scale_times_rounding: float
+    part_of_cos_q6: float
+    scale_q3_squared_times_rounding: float
+    a2_squared_plus_a3_squared: float
+    twice_d5: float
+    d1_times_d5_times_2: float
+    a2_plus_a3: float
+    a2_minus_a3: float
 
 
 class Ac6ThreeParallel(Mechanism):
@@ -444,6 +457,19 @@ class Ac6ThreeParallel(Mechanism):
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
         scale_q3 = 2.0*a2*a3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         size_q1_for_q3 = 2.0*abs(a2*a3)
+        machine_scale_times_free_angle = 1e-11*machine_scale
+        size_q1_for_q3_times_rounding = 1e-12*size_q1_for_q3
+        part_of_divisor_q6_q1_for_q3 = 9.999999e-13*size_q1_for_q3
+        part_of_highest_q6_q1_for_q3 = 0.9999999*size_q1_for_q3
+        machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
+        machine_scale_times_rounding = 1e-12*machine_scale
+        part_of_cos_q6 = 1.000000001*size_q1_for_q3
+        scale_q3_squared_times_rounding = 1e-12*scale_q3*scale_q3
+        a2_squared_plus_a3_squared = a2*a2 + a3*a3
+        twice_d5 = 2.0*d5
+        d1_times_d5_times_2 = 2.0*d1*d5
+        a2_plus_a3 = a2 + a3
+        a2_minus_a3 = a2 - a3
         return Constants(
             d1=d1, a2=a2, a3=a3, d4=d4, d5=d5, d6=d6, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
             offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6, check_limits=check_limits,
@@ -458,6 +484,15 @@ class Ac6ThreeParallel(Mechanism):
             single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6, upper_a6=effective_upper_a6,
             unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6, single_a6=single_a6, mid_a6=mid_a6,
             machine_scale=machine_scale, rounding_q1=rounding_q1, scale_q3=scale_q3, size_q1_for_q3=size_q1_for_q3,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            size_q1_for_q3_times_rounding=size_q1_for_q3_times_rounding,
+            part_of_divisor_q6_q1_for_q3=part_of_divisor_q6_q1_for_q3,
+            part_of_highest_q6_q1_for_q3=part_of_highest_q6_q1_for_q3,
+            machine_scale_squared_times_plane=machine_scale_squared_times_plane,
+            machine_scale_times_rounding=machine_scale_times_rounding, part_of_cos_q6=part_of_cos_q6,
+            scale_q3_squared_times_rounding=scale_q3_squared_times_rounding,
+            a2_squared_plus_a3_squared=a2_squared_plus_a3_squared, twice_d5=twice_d5,
+            d1_times_d5_times_2=d1_times_d5_times_2, a2_plus_a3=a2_plus_a3, a2_minus_a3=a2_minus_a3,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -483,29 +518,32 @@ class Ac6ThreeParallel(Mechanism):
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
+        q5 = DEGREE*(axis_a5 - offset_a5)
+        sin_q5 = sin(q5)
         q1 = DEGREE*(axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
+        q4 = DEGREE*(axis_a4 - offset_a4)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        q4 = DEGREE*(axis_a4 - offset_a4)
-        cos_q234 = cos(q2 + q3 + q4)
+        q2_plus_q3 = q2 + q3
+        q2_plus_q3_plus_q4 = q2_plus_q3 + q4
+        cos_q234 = cos(q2_plus_q3_plus_q4)
         r11_at_q234 = cos_q1*cos_q234
-        q5 = DEGREE*(axis_a5 - offset_a5)
-        sin_q5 = sin(q5)
         cos_q5 = cos(q5)
         r12_at_q5 = cos_q5*sin_q1 - r11_at_q234*sin_q5
-        sin_q234 = sin(q2 + q3 + q4)
+        sin_q234 = sin(q2_plus_q3_plus_q4)
         r12_at_q234 = -cos_q1*sin_q234
         cos_q2 = cos(q2)
         r11_at_q2 = cos_q1*cos_q2
         x_at_q3 = a2*r11_at_q2
-        cos_q23 = cos(q2 + q3)
+        cos_q23 = cos(q2_plus_q3)
         r11_at_q23 = cos_q1*cos_q23
         x_at_q4 = x_at_q3 + a3*r11_at_q23
         x_at_q5 = x_at_q4 + d4*sin_q1
         x_at_q6 = x_at_q5 - d5*r12_at_q234
-        x = x_at_q6 + d6*r12_at_q5
+        d6_times_r12_at_q5 = d6*r12_at_q5
+        x = d6_times_r12_at_q5 + x_at_q6
         r21_at_q234 = cos_q234*sin_q1
         r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5
         r22_at_q234 = -sin_q1*sin_q234
@@ -515,11 +553,12 @@ class Ac6ThreeParallel(Mechanism):
         y_at_q4 = y_at_q3 + a3*r21_at_q23
         y_at_q5 = y_at_q4 - d4*cos_q1
         y_at_q6 = y_at_q5 - d5*r22_at_q234
-        y = y_at_q6 + d6*r22_at_q5
+        d6_times_r22_at_q5 = -d6*r22_at_q5
+        y = y_at_q6 - d6_times_r22_at_q5
         r32_at_q5 = -sin_q234*sin_q5
         sin_q2 = sin(q2)
         z_at_q3 = d1 + a2*sin_q2
-        sin_q23 = sin(q2 + q3)
+        sin_q23 = sin(q2_plus_q3)
         z_at_q4 = z_at_q3 + a3*sin_q23
         z_at_q6 = z_at_q4 - d5*cos_q234
         z = z_at_q6 + d6*r32_at_q5
@@ -535,8 +574,8 @@ class Ac6ThreeParallel(Mechanism):
         r31_at_q5 = cos_q5*sin_q234
         r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6
         r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6*r12_at_q5  # the point that the last joints turn about
-        wrist_y = y - d6*r22_at_q5
+        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
+        wrist_y = d6_times_r22_at_q5 + y
         branch_shoulder = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         return (
@@ -566,10 +605,11 @@ class Ac6ThreeParallel(Mechanism):
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
         q4 = DEGREE*(axis_a4 - offset_a4)
-        sin_q234 = sin(q2 + q3 + q4)
+        q2_plus_q3_plus_q4 = q2 + q3 + q4
+        sin_q234 = sin(q2_plus_q3_plus_q4)
         r12_at_q234 = -cos_q1*sin_q234
         sin_q1 = sin(q1)
-        cos_q234 = cos(q2 + q3 + q4)
+        cos_q234 = cos(q2_plus_q3_plus_q4)
         r11_at_q234 = cos_q1*cos_q234
         q5 = DEGREE*(axis_a5 - offset_a5)
         sin_q5 = sin(q5)
@@ -608,12 +648,18 @@ class Ac6ThreeParallel(Mechanism):
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
         a2 = k.a2
+        a2_minus_a3 = k.a2_minus_a3
+        a2_plus_a3 = k.a2_plus_a3
+        a2_squared_plus_a3_squared = k.a2_squared_plus_a3_squared
         a3 = k.a3
         d1 = k.d1
+        d1_times_d5_times_2 = k.d1_times_d5_times_2
         d4 = k.d4
         d5 = k.d5
         d6 = k.d6
-        machine_scale = k.machine_scale
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding = k.machine_scale_times_rounding
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -626,8 +672,11 @@ class Ac6ThreeParallel(Mechanism):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
+        part_of_cos_q6 = k.part_of_cos_q6
+        part_of_divisor_q6_q1_for_q3 = k.part_of_divisor_q6_q1_for_q3
+        part_of_highest_q6_q1_for_q3 = k.part_of_highest_q6_q1_for_q3
         rounding_q1 = k.rounding_q1
-        scale_q3 = k.scale_q3
+        scale_q3_squared_times_rounding = k.scale_q3_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -635,6 +684,8 @@ class Ac6ThreeParallel(Mechanism):
         single_a5 = k.single_a5
         single_a6 = k.single_a6
         size_q1_for_q3 = k.size_q1_for_q3
+        size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
+        twice_d5 = k.twice_d5
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -646,29 +697,32 @@ class Ac6ThreeParallel(Mechanism):
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
-        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
-            missing = 0.5*abs(d4 - distance_q1) + 0.5*abs(d4 + distance_q1) - distance_q1
+        if not (ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1):
+            missing = 0.5*(abs(d4 - distance_q1) + abs(d4 + distance_q1)) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_shoulder
         # its reference where it is free
-        if distance_q1 > 1e-11*machine_scale:
-            divisor_q1 = distance_q1*distance_q1
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/divisor_q1
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/divisor_q1
+        if distance_q1 > machine_scale_times_free_angle:
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/distance_q1_squared
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/distance_q1_squared
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
         wrist_z = z - d6*r33
+        wrist_y_from_q1_fixed = wrist_z - d1
         # turned within rounding, where the rest can be reached
-        if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
+        if ahead_squared_q1 > machine_scale_squared_times_plane:
             ahead_q1 = ahead_q1_before_q1_for_q3
             cos_q1 = cos_q1_before_q1_for_q3
             sin_q1 = sin_q1_before_q1_for_q3
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = -sin(free_a6)
             r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
             r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
             radius_q6_before_q1_for_q3 = sqrt(
@@ -683,38 +737,35 @@ class Ac6ThreeParallel(Mechanism):
             across_q6_rate_q1_for_q3 = sigma_wrist*r22_from_q1_rate_q1_for_q3
             if radius_q6_before_q1_for_q3 > 1e-11:
                 along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
-                cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
+                one_by_length_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
+                part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_length_q6_before_q1_for_q3
+                cos_q6_before_q1_for_q3 = -part_of_cos_q6_before_q1_for_q3
                 across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
-                sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
+                part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_length_q6_before_q1_for_q3
+                sin_q6_before_q1_for_q3 = part_of_sin_q6_before_q1_for_q3
                 radius_q6_rate_q1_for_q3 = (
-                    0.5
-                    *(
-                        2.0*r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                        + 2.0*r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                    -(
+                        -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                        - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                     )
                     /radius_q6_before_q1_for_q3
                 )
                 cos_q6_rate_q1_for_q3 = (
-                    along_q6_rate_q1_for_q3/radius_q6_before_q1_for_q3
-                    - along_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3/(
-                        radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
-                    )
+                    (along_q6_rate_q1_for_q3 + part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
+                    *one_by_length_q6_before_q1_for_q3
                 )
                 sin_q6_rate_q1_for_q3 = (
-                    across_q6_rate_q1_for_q3/radius_q6_before_q1_for_q3
-                    - across_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3/(
-                        radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
-                    )
+                    (across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
+                    *one_by_length_q6_before_q1_for_q3
                 )
             else:
-                cos_q6_before_q1_for_q3 = cos(free_a6)
-                sin_q6_before_q1_for_q3 = sin(free_a6)
+                cos_q6_before_q1_for_q3 = cos_of_free_a6
+                sin_q6_before_q1_for_q3 = -sin_of_free_a6
                 if radius_q6_before_q1_for_q3 > 0.0:
                     radius_q6_rate_q1_for_q3 = (
-                        0.5
-                        *(
-                            2.0*r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                            + 2.0*r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                        -(
+                            -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                            - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                         )
                         /radius_q6_before_q1_for_q3
                     )
@@ -728,11 +779,11 @@ class Ac6ThreeParallel(Mechanism):
             )
             wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q1_for_q3
             r22_from_q1_before_q6_before_q1_for_q3 = r32*cos_q6_before_q1_for_q3 + r31*sin_q6_before_q1_for_q3
-            wrist_y_from_q1_before_q1_for_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3 - d1
+            wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3 = (
                 wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
-                + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - a2*a2 - a3*a3
+                + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - a2_squared_plus_a3_squared
             )
             # turned within rounding, where the rest can be reached
             if abs(value_q1_for_q3) <= size_q1_for_q3:
@@ -752,11 +803,14 @@ class Ac6ThreeParallel(Mechanism):
                 wrist_y_from_q1_rate_q1_for_q3 = d5*r22_from_q1_before_q6_rate_q1_for_q3
                 # how it changes with q1
                 rate_q1_for_q3 = (
-                    2.0*wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
-                    + 2.0*wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
+                    2.0
+                    *(
+                        wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
+                        + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
+                    )
                 )
                 # to the boundary of the later step
-                if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
+                if abs(rate_q1_for_q3) > size_q1_for_q3_times_rounding:
                     excess_q1_for_q3 = (
                         value_q1_for_q3 - size_q1_for_q3
                         if value_q1_for_q3 > 0.0
@@ -765,44 +819,37 @@ class Ac6ThreeParallel(Mechanism):
                     turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
                 else:
                     turn_q1_for_q3 = 1.0
+                turn_q1_for_q3_squared = turn_q1_for_q3*turn_q1_for_q3
                 # whether it follows q6
                 follows_q1_for_q3 = (
-                    (turn_q1_for_q3*turn_q1_for_q3 > 1e-12)
+                    (turn_q1_for_q3_squared > 1e-12)
                     or (
                         (across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3 + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3)
-                        *turn_q1_for_q3*turn_q1_for_q3 > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                        *turn_q1_for_q3_squared > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
                     )
                 )
                 if follows_q1_for_q3:
-                    along_q6_q1_for_q3 = (
-                        2.0*d5*r32*wrist_z - 2.0*d1*d5*r32 - 2.0*ahead_q1_before_q1_for_q3*d5*r31*cos_q5_before_q1_for_q3
-                    )
-                    across_q6_q1_for_q3 = (
-                        2.0*d5*r31*wrist_z + 2.0*ahead_q1_before_q1_for_q3*d5*r32*cos_q5_before_q1_for_q3 - 2.0*d1*d5*r31
-                    )
+                    part_of_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5*wrist_z
+                    part_of_across_q6_q1_for_q3_2 = ahead_q1_before_q1_for_q3*twice_d5*cos_q5_before_q1_for_q3
+                    along_q6_q1_for_q3 = -part_of_across_q6_q1_for_q3*r32 - part_of_across_q6_q1_for_q3_2*r31
+                    across_q6_q1_for_q3 = part_of_across_q6_q1_for_q3_2*r32 - part_of_across_q6_q1_for_q3*r31
                     swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3 + along_q6_q1_for_q3*along_q6_q1_for_q3)
                     # the arc: cosines from its centre
-                    if swing_q6_q1_for_q3 > 9.999999000000001e-13*size_q1_for_q3:
+                    if swing_q6_q1_for_q3 > part_of_divisor_q6_q1_for_q3:
                         level_q6_q1_for_q3 = (
                             value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3 - along_q6_q1_for_q3*cos_q6_before_q1_for_q3
                         )
+                        part_of_highest_q6_q1_for_q3_2 = (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3
                         highest_q6_q1_for_q3 = (
                             1.0
-                            if (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 > 1.0
-                            else (
-                                -1.0
-                                if (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 < -1.0
-                                else (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3
-                            )
+                            if part_of_highest_q6_q1_for_q3_2 > 1.0
+                            else (-1.0 if part_of_highest_q6_q1_for_q3_2 < -1.0 else part_of_highest_q6_q1_for_q3_2)
                         )
+                        part_of_lowest_q6_q1_for_q3 = (level_q6_q1_for_q3 + part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3
                         lowest_q6_q1_for_q3 = (
                             1.0
-                            if (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 > 1.0
-                            else (
-                                -1.0
-                                if (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 < -1.0
-                                else (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3
-                            )
+                            if -part_of_lowest_q6_q1_for_q3 > 1.0
+                            else (-1.0 if -part_of_lowest_q6_q1_for_q3 < -1.0 else -part_of_lowest_q6_q1_for_q3)
                         )
                     else:
                         highest_q6_q1_for_q3 = 1.0
@@ -821,20 +868,21 @@ class Ac6ThreeParallel(Mechanism):
                         else -1.0
                     )
                     moved_q6_q1_for_q3 = nearest_on_arc(
-                        angle_q6_q1_for_q3, centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
-                        0.5*far_q6_q1_for_q3 - 0.5*near_q6_q1_for_q3,
+                        angle_q6_q1_for_q3,
+                        centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
+                        0.5*(far_q6_q1_for_q3 - near_q6_q1_for_q3),
                     )
                     near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
                     near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
-                    near_q_q1_for_q3 = sigma_wrist*near_cos_q6_q1_for_q3*r12 + sigma_wrist*near_sin_q6_q1_for_q3*r11
-                    near_p_q1_for_q3 = -sigma_wrist*near_cos_q6_q1_for_q3*r22 - sigma_wrist*near_sin_q6_q1_for_q3*r21
+                    near_q_q1_for_q3 = sigma_wrist*(near_cos_q6_q1_for_q3*r12 + near_sin_q6_q1_for_q3*r11)
+                    near_p_q1_for_q3 = (-near_cos_q6_q1_for_q3*r22 - near_sin_q6_q1_for_q3*r21)*sigma_wrist
                     near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
                     # the earlier angle follows
                     # it stays where every angle gives this one
                     if near_radius_q1_for_q3 > 1e-12:
                         near_along_q1_for_q3 = (
-                            (sigma_wrist*near_cos_q6_q1_for_q3*r11 - sigma_wrist*near_sin_q6_q1_for_q3*r12)*near_p_q1_for_q3
-                            - (sigma_wrist*near_sin_q6_q1_for_q3*r22 - sigma_wrist*near_cos_q6_q1_for_q3*r21)*near_q_q1_for_q3
+                            sigma_wrist*(near_cos_q6_q1_for_q3*r21 - near_sin_q6_q1_for_q3*r22)*near_q_q1_for_q3
+                            - (near_sin_q6_q1_for_q3*r12 - near_cos_q6_q1_for_q3*r11)*sigma_wrist*near_p_q1_for_q3
                         )
                         # of two opposite ways
                         near_towards_q1_for_q3 = (
@@ -843,18 +891,19 @@ class Ac6ThreeParallel(Mechanism):
                             else near_along_q1_for_q3
                         )
                         near_side_q1_for_q3 = -1.0 if near_towards_q1_for_q3 < 0.0 else 1.0
-                        near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
-                        near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
+                        part_of_near_cos_q1_for_q3 = near_side_q1_for_q3/near_radius_q1_for_q3
+                        near_cos_q1_for_q3 = -near_q_q1_for_q3*part_of_near_cos_q1_for_q3
+                        near_sin_q1_for_q3 = near_p_q1_for_q3*part_of_near_cos_q1_for_q3
                     else:
                         near_cos_q1_for_q3 = cos_q1_before_q1_for_q3
                         near_sin_q1_for_q3 = sin_q1_before_q1_for_q3
-                    if distance_q1 > 1e-11*machine_scale:
+                    if distance_q1 > machine_scale_times_free_angle:
                         near_cost_q1_for_q3 = abs(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
                         mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
                         mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
                         mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
-                        mirrored_q_q1_for_q3 = sigma_wrist*mirrored_cos_q6_q1_for_q3*r12 + sigma_wrist*mirrored_sin_q6_q1_for_q3*r11
-                        mirrored_p_q1_for_q3 = -sigma_wrist*mirrored_cos_q6_q1_for_q3*r22 - sigma_wrist*mirrored_sin_q6_q1_for_q3*r21
+                        mirrored_q_q1_for_q3 = sigma_wrist*(mirrored_cos_q6_q1_for_q3*r12 + mirrored_sin_q6_q1_for_q3*r11)
+                        mirrored_p_q1_for_q3 = (-mirrored_cos_q6_q1_for_q3*r22 - mirrored_sin_q6_q1_for_q3*r21)*sigma_wrist
                         mirrored_radius_q1_for_q3 = sqrt(
                             mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
                         )
@@ -862,12 +911,8 @@ class Ac6ThreeParallel(Mechanism):
                         # it stays where every angle gives this one
                         if mirrored_radius_q1_for_q3 > 1e-12:
                             mirrored_along_q1_for_q3 = (
-                                (
-                                    sigma_wrist*mirrored_cos_q6_q1_for_q3*r11 - sigma_wrist*mirrored_sin_q6_q1_for_q3*r12
-                                )*mirrored_p_q1_for_q3
-                                - (
-                                    sigma_wrist*mirrored_sin_q6_q1_for_q3*r22 - sigma_wrist*mirrored_cos_q6_q1_for_q3*r21
-                                )*mirrored_q_q1_for_q3
+                                sigma_wrist*(mirrored_cos_q6_q1_for_q3*r21 - mirrored_sin_q6_q1_for_q3*r22)*mirrored_q_q1_for_q3
+                                - (mirrored_sin_q6_q1_for_q3*r12 - mirrored_cos_q6_q1_for_q3*r11)*sigma_wrist*mirrored_p_q1_for_q3
                             )
                             # of two opposite ways
                             mirrored_towards_q1_for_q3 = (
@@ -876,8 +921,9 @@ class Ac6ThreeParallel(Mechanism):
                                 else mirrored_along_q1_for_q3
                             )
                             mirrored_side_q1_for_q3 = -1.0 if mirrored_towards_q1_for_q3 < 0.0 else 1.0
-                            mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
-                            mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                            part_of_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                            mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*part_of_mirrored_cos_q1_for_q3
+                            mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*part_of_mirrored_cos_q1_for_q3
                         else:
                             mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3
                             mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3
@@ -900,22 +946,23 @@ class Ac6ThreeParallel(Mechanism):
                     best_cos_q1_for_q3 = swept_cos_q1_for_q3
                     best_sin_q1_for_q3 = swept_sin_q1_for_q3
                 else:
-                    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3_squared)
+                    one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
                     turned_cos_q1_for_q3 = (
-                        (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                        one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
                     )
                     turned_sin_q1_for_q3 = (
-                        (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                        one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
                     )
                     # what is left of its own equation
                     turned_cost_q1_for_q3 = abs(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
                     best_cost_q1_for_q3 = turned_cost_q1_for_q3
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)/turned_length_q1_for_q3
+                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
                     best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
                     best_cos_q1_for_q3 = turned_cos_q1_for_q3
                     best_sin_q1_for_q3 = turned_sin_q1_for_q3
                 # turned within rounding, where the rest can be reached
-                if best_cost_q1_for_q3 > 1e-12*machine_scale:
+                if best_cost_q1_for_q3 > machine_scale_times_rounding:
                     ahead_q1 = ahead_q1_before_q1_for_q3
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
@@ -928,6 +975,7 @@ class Ac6ThreeParallel(Mechanism):
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         q6_radius_of_q5 = sigma_wrist*radius_q6
+        q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33
         # its reference where it is free
         if radius_q6 > 1e-11:
             along_q6 = -sigma_wrist*r21_from_q1  # q6: polar angle in the r31 and r32 equations
@@ -936,63 +984,61 @@ class Ac6ThreeParallel(Mechanism):
             sin_q6_before_q6_of_q3 = across_q6/radius_q6
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3 = cos(free_a6)
-            sin_q6_before_q6_of_q3 = sin(free_a6)
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = -sin(free_a6)
+            cos_q6_before_q6_of_q3 = cos_of_free_a6
+            sin_q6_before_q6_of_q3 = -sin_of_free_a6
         r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
-        r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5*r33
+        r21_from_q1_before_q56_before_q6_of_q3 = (
+            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5_times_r33
+        )
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
         r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
-        wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2*a2 - a3*a3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
         )
+        size_of_value_q6_of_q3 = abs(value_q6_of_q3)
         # kept where the rest can be reached
-        if abs(value_q6_of_q3) <= size_q1_for_q3:
+        if size_of_value_q6_of_q3 <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
         else:
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > 1.000000001*size_q1_for_q3:
+            if radius_q6 > 0.1 and size_of_value_q6_of_q3 > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
-                wrist_x_from_q1_fixed = ahead_q1 + d5*q6_radius_of_q5*r33
-                wrist_x_from_q1_along = -d5*r31*cos_q5
-                wrist_y_from_q1_fixed = wrist_z - d1
+                wrist_x_from_q1_fixed = ahead_q1 + d5*q6_radius_of_q5_times_r33
+                wrist_y_from_q1_across = d5*r31
+                wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
                 wrist_y_from_q1_along = d5*r32
                 along_q6_of_q3 = (
-                    2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+                    -2.0*(-wrist_x_from_q1_along*wrist_x_from_q1_fixed - wrist_y_from_q1_along*wrist_y_from_q1_fixed)
                 )
-                wrist_x_from_q1_across = d5*r32*cos_q5
-                wrist_y_from_q1_across = d5*r31
+                wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
                 across_q6_of_q3 = (
-                    2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                    2.0*(wrist_x_from_q1_across*wrist_x_from_q1_fixed + wrist_y_from_q1_across*wrist_y_from_q1_fixed)
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > 1e-12*size_q1_for_q3:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     level_q6_of_q3 = (
                         value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
                     )
+                    part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                     highest_q6_of_q3 = (
                         1.0
-                        if (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
-                        )
+                        if part_of_highest_q6_of_q3 > 1.0
+                        else (-1.0 if part_of_highest_q6_of_q3 < -1.0 else part_of_highest_q6_of_q3)
                     )
+                    part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                     lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
-                        else (
-                            -1.0
-                            if (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
-                            else (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
-                        )
+                        if -part_of_lowest_q6_of_q3 > 1.0
+                        else (-1.0 if -part_of_lowest_q6_of_q3 < -1.0 else -part_of_lowest_q6_of_q3)
                     )
                 else:
                     highest_q6_of_q3 = 1.0
@@ -1007,17 +1053,17 @@ class Ac6ThreeParallel(Mechanism):
                     else -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
-                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+                    angle_q6_of_q3,
+                    centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*(far_q6_of_q3 - near_q6_of_q3),
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
+                part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
-                    sqrt(
-                        (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
-                        + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
-                    )
+                    sqrt(part_of_cost_q6_of_q3*part_of_cost_q6_of_q3 + part_of_cost_q6_of_q3_2*part_of_cost_q6_of_q3_2)
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
@@ -1029,18 +1075,21 @@ class Ac6ThreeParallel(Mechanism):
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
+        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5_times_r33
         wrist_x_from_q1 = ahead_q1 - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2 + a3 + reach)*(a2 + a3 - reach)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (a3 + reach - a2)*(a2 + reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        if not (sine_square_q3 >= -1e-12*scale_q3*scale_q3):
+        if not (sine_square_q3 >= -scale_q3_squared_times_rounding):
             missing = (
-                0.5*abs(a3 + reach - a2) + 0.5*abs(a2 + reach - a3) + 0.5*abs(a2 + a3 - reach) + 0.5*abs(a2 + a3 + reach)
+                0.5*(
+                    abs(a2_minus_a3 - reach) + abs(a2_minus_a3 + reach) + abs(a2_plus_a3 - reach)
+                    + abs(a2_plus_a3 + reach)
+                )
                 - reach - abs(a2) - abs(a3)
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
@@ -1054,7 +1103,7 @@ class Ac6ThreeParallel(Mechanism):
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(sum_q3)
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
@@ -1199,32 +1248,36 @@ class Ac6ThreeParallel(Mechanism):
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
+        q5 = DEGREE*(axis_a5 - offset_a5)
+        sin_q5 = sin(q5)
         q1 = DEGREE*(axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
+        q4 = DEGREE*(axis_a4 - offset_a4)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        q4 = DEGREE*(axis_a4 - offset_a4)
-        cos_q234 = cos(q2 + q3 + q4)
+        q2_plus_q3 = q2 + q3
+        q2_plus_q3_plus_q4 = q2_plus_q3 + q4
+        cos_q234 = cos(q2_plus_q3_plus_q4)
         r11_at_q234 = cos_q1*cos_q234
-        q5 = DEGREE*(axis_a5 - offset_a5)
-        sin_q5 = sin(q5)
         cos_q5 = cos(q5)
         r12_at_q5 = cos_q5*sin_q1 - r11_at_q234*sin_q5
-        sin_q234 = sin(q2 + q3 + q4)
+        d6_times_r12_at_q5 = d6*r12_at_q5
+        sin_q234 = sin(q2_plus_q3_plus_q4)
         r12_at_q234 = -cos_q1*sin_q234
         cos_q2 = cos(q2)
         r11_at_q2 = cos_q1*cos_q2
         x_at_q3 = a2*r11_at_q2
-        cos_q23 = cos(q2 + q3)
+        cos_q23 = cos(q2_plus_q3)
         r11_at_q23 = cos_q1*cos_q23
         x_at_q4 = x_at_q3 + a3*r11_at_q23
         x_at_q5 = x_at_q4 + d4*sin_q1
         x_at_q6 = x_at_q5 - d5*r12_at_q234
-        x = x_at_q6 + d6*r12_at_q5
-        wrist_x = x - d6*r12_at_q5  # the point that the last joints turn about
+        x = d6_times_r12_at_q5 + x_at_q6
+        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
         r21_at_q234 = cos_q234*sin_q1
         r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5
+        d6_times_r22_at_q5 = -d6*r22_at_q5
         r22_at_q234 = -sin_q1*sin_q234
         r21_at_q2 = cos_q2*sin_q1
         y_at_q3 = a2*r21_at_q2
@@ -1232,8 +1285,8 @@ class Ac6ThreeParallel(Mechanism):
         y_at_q4 = y_at_q3 + a3*r21_at_q23
         y_at_q5 = y_at_q4 - d4*cos_q1
         y_at_q6 = y_at_q5 - d5*r22_at_q234
-        y = y_at_q6 + d6*r22_at_q5
-        wrist_y = y - d6*r22_at_q5
+        y = y_at_q6 - d6_times_r22_at_q5
+        wrist_y = d6_times_r22_at_q5 + y
         margin_wrist_on_axis_1 = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         return (margin_wrist_on_axis_1, sin_q3, sin_q5)
@@ -1262,33 +1315,29 @@ class Ac6ThreeParallel(Mechanism):
         q1 = DEGREE*(axis_a1 - offset_a1)
         cos_q1 = cos(q1)
         sin_q1 = sin(q1)
+        q4 = DEGREE*(axis_a4 - offset_a4)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        q4 = DEGREE*(axis_a4 - offset_a4)
-        cos_q234 = cos(q2 + q3 + q4)
+        q2_plus_q3 = q2 + q3
+        q2_plus_q3_plus_q4 = q2_plus_q3 + q4
+        cos_q234 = cos(q2_plus_q3_plus_q4)
         r21_at_q234 = cos_q234*sin_q1
         q5 = DEGREE*(axis_a5 - offset_a5)
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
         r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5
-        sin_q234 = sin(q2 + q3 + q4)
+        sin_q234 = sin(q2_plus_q3_plus_q4)
         r22_at_q234 = -sin_q1*sin_q234
         cos_q2 = cos(q2)
         r21_at_q2 = cos_q2*sin_q1
         y_at_q3 = a2*r21_at_q2
-        cos_q23 = cos(q2 + q3)
+        cos_q23 = cos(q2_plus_q3)
         r21_at_q23 = cos_q23*sin_q1
         y_at_q4 = y_at_q3 + a3*r21_at_q23
         y_at_q5 = y_at_q4 - d4*cos_q1
         y_at_q6 = y_at_q5 - d5*r22_at_q234
         y = y_at_q6 + d6*r22_at_q5
         r32_at_q5 = -sin_q234*sin_q5
-        sin_q2 = sin(q2)
-        z_at_q3 = d1 + a2*sin_q2
-        sin_q23 = sin(q2 + q3)
-        z_at_q4 = z_at_q3 + a3*sin_q23
-        z_at_q6 = z_at_q4 - d5*cos_q234
-        z = z_at_q6 + d6*r32_at_q5
         r11_at_q234 = cos_q1*cos_q234
         r12_at_q5 = cos_q5*sin_q1 - r11_at_q234*sin_q5
         r12_at_q234 = -cos_q1*sin_q234
@@ -1299,30 +1348,36 @@ class Ac6ThreeParallel(Mechanism):
         x_at_q5 = x_at_q4 + d4*sin_q1
         x_at_q6 = x_at_q5 - d5*r12_at_q234
         x = x_at_q6 + d6*r12_at_q5
+        sin_q2 = sin(q2)
+        z_at_q3 = d1 + a2*sin_q2
+        sin_q23 = sin(q2_plus_q3)
+        z_at_q4 = z_at_q3 + a3*sin_q23
+        z_at_q6 = z_at_q4 - d5*cos_q234
+        z = z_at_q6 + d6*r32_at_q5
+        z_minus_d1 = z - d1
+        z_minus_z_at_q3 = z - z_at_q3
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q5 = y - y_at_q5
+        y_minus_y_at_q6 = y - y_at_q6
+        z_minus_z_at_q6 = z - z_at_q6
+        x_minus_x_at_q5 = x - x_at_q5
+        x_minus_x_at_q6 = x - x_at_q6
         return (
             (
-                -y,
-                -(z - d1)*cos_q1,
-                -(z - z_at_q3)*cos_q1,
-                -(z - z_at_q4)*cos_q1,
-                (y - y_at_q5)*cos_q234 - r22_at_q234*(z - z_at_q4),
-                r22_at_q5*(z - z_at_q6) - r32_at_q5*(y - y_at_q6),
+                -y, -z_minus_d1*cos_q1, -z_minus_z_at_q3*cos_q1, -z_minus_z_at_q4*cos_q1,
+                y_minus_y_at_q5*cos_q234 - r22_at_q234*z_minus_z_at_q4,
+                r22_at_q5*z_minus_z_at_q6 - r32_at_q5*y_minus_y_at_q6,
             ),
             (
-                x,
-                -(z - d1)*sin_q1,
-                -(z - z_at_q3)*sin_q1,
-                -(z - z_at_q4)*sin_q1,
-                r12_at_q234*(z - z_at_q4) - (x - x_at_q5)*cos_q234,
-                r32_at_q5*(x - x_at_q6) - r12_at_q5*(z - z_at_q6),
+                x, -z_minus_d1*sin_q1, -z_minus_z_at_q3*sin_q1, -z_minus_z_at_q4*sin_q1,
+                r12_at_q234*z_minus_z_at_q4 - x_minus_x_at_q5*cos_q234,
+                r32_at_q5*x_minus_x_at_q6 - r12_at_q5*z_minus_z_at_q6,
             ),
             (
-                0.0,
-                x*cos_q1 + y*sin_q1,
-                (x - x_at_q3)*cos_q1 + (y - y_at_q3)*sin_q1,
+                0.0, x*cos_q1 + y*sin_q1, (x - x_at_q3)*cos_q1 + (y - y_at_q3)*sin_q1,
                 (x - x_at_q4)*cos_q1 + (y - y_at_q4)*sin_q1,
-                r22_at_q234*(x - x_at_q5) - r12_at_q234*(y - y_at_q5),
-                r12_at_q5*(y - y_at_q6) - r22_at_q5*(x - x_at_q6),
+                r22_at_q234*x_minus_x_at_q5 - r12_at_q234*y_minus_y_at_q5,
+                r12_at_q5*y_minus_y_at_q6 - r22_at_q5*x_minus_x_at_q6,
             ),
             (0.0, sin_q1, sin_q1, sin_q1, -r12_at_q234, r12_at_q5),
             (0.0, -cos_q1, -cos_q1, -cos_q1, -r22_at_q234, r22_at_q5),

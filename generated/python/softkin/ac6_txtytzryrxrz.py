@@ -421,35 +421,34 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
-        a1 = axis_a1 - offset_a1
-        a4 = DEGREE*(axis_a4 - offset_a4)
-        sin_a4 = sin(a4)
         a5 = DEGREE*(axis_a5 - offset_a5)
         cos_a5 = cos(a5)
+        a4 = DEGREE*(axis_a4 - offset_a4)
+        sin_a4 = sin(a4)
         r13_at_a5 = cos_a5*sin_a4
-        cos_a4 = cos(a4)
         sin_a5 = sin(a5)
+        cos_a4 = cos(a4)
         r12_at_a5 = sin_a4*sin_a5
         a6 = DEGREE*(axis_a6 - offset_a6)
         sin_a6 = sin(a6)
         cos_a6 = cos(a6)
         r11_at_a6 = cos_a4*cos_a6 + r12_at_a5*sin_a6
         r12_at_a6 = r12_at_a5*cos_a6 - cos_a4*sin_a6
+        a1 = axis_a1 - offset_a1
         x = a1 + flange_x*r11_at_a6 + flange_y*r12_at_a6 + flange_z*r13_at_a5
-        a2 = axis_a2 - offset_a2
         r21_at_a6 = cos_a5*sin_a6
         r22_at_a6 = cos_a5*cos_a6
+        a2 = axis_a2 - offset_a2
         y = a2 + flange_x*r21_at_a6 + flange_y*r22_at_a6 - flange_z*sin_a5
-        a3 = axis_a3 - offset_a3
         r33_at_a5 = cos_a4*cos_a5
         r32_at_a5 = cos_a4*sin_a5
         r31_at_a6 = r32_at_a5*sin_a6 - cos_a6*sin_a4
         r32_at_a6 = r32_at_a5*cos_a6 + sin_a4*sin_a6
+        a3 = axis_a3 - offset_a3
         z = a3 + flange_x*r31_at_a6 + flange_y*r32_at_a6 + flange_z*r33_at_a5
-        r23 = -sin_a5
         return (
             (x, y, z),
-            ((r11_at_a6, r12_at_a6, r13_at_a5), (r21_at_a6, r22_at_a6, r23), (r31_at_a6, r32_at_a6, r33_at_a5)),
+            ((r11_at_a6, r12_at_a6, r13_at_a5), (r21_at_a6, r22_at_a6, -sin_a5), (r31_at_a6, r32_at_a6, r33_at_a5)),
             (cos_a5,),
         )
 
@@ -466,11 +465,11 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
+        a5 = DEGREE*(axis_a5 - offset_a5)
+        sin_a5 = sin(a5)
         a4 = DEGREE*(axis_a4 - offset_a4)
         cos_a4 = cos(a4)
         sin_a4 = sin(a4)
-        a5 = DEGREE*(axis_a5 - offset_a5)
-        sin_a5 = sin(a5)
         r12_at_a5 = sin_a4*sin_a5
         a6 = DEGREE*(axis_a6 - offset_a6)
         sin_a6 = sin(a6)
@@ -481,12 +480,11 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         r13_at_a5 = cos_a5*sin_a4
         r21_at_a6 = cos_a5*sin_a6
         r22_at_a6 = cos_a5*cos_a6
-        r23 = -sin_a5
         r32_at_a5 = cos_a4*sin_a5
         r31_at_a6 = r32_at_a5*sin_a6 - cos_a6*sin_a4
         r32_at_a6 = r32_at_a5*cos_a6 + sin_a4*sin_a6
         r33_at_a5 = cos_a4*cos_a5
-        return ((r11_at_a6, r12_at_a6, r13_at_a5), (r21_at_a6, r22_at_a6, r23), (r31_at_a6, r32_at_a6, r33_at_a5))
+        return ((r11_at_a6, r12_at_a6, r13_at_a5), (r21_at_a6, r22_at_a6, -sin_a5), (r31_at_a6, r32_at_a6, r33_at_a5))
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
@@ -540,10 +538,9 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         a4_radius_of_a5 = sigma_wrist*radius_a4
-        sin_a5 = -r23
         open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
         near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5 + 0.0)/DEGREE  # A5: its turn
+        axis_a5 = offset_a5 + arctan2(-r23, a4_radius_of_a5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
@@ -661,7 +658,6 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
-        a3 = axis_a3 - offset_a3
         a4 = DEGREE*(axis_a4 - offset_a4)
         cos_a4 = cos(a4)
         a5 = DEGREE*(axis_a5 - offset_a5)
@@ -669,6 +665,8 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         r33_at_a5 = cos_a4*cos_a5
         sin_a4 = sin(a4)
         sin_a5 = sin(a5)
+        r13_at_a5 = cos_a5*sin_a4
+        a3 = axis_a3 - offset_a3
         r32_at_a5 = cos_a4*sin_a5
         a6 = DEGREE*(axis_a6 - offset_a6)
         sin_a6 = sin(a6)
@@ -676,20 +674,22 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         r31_at_a6 = r32_at_a5*sin_a6 - cos_a6*sin_a4
         r32_at_a6 = r32_at_a5*cos_a6 + sin_a4*sin_a6
         z = a3 + flange_x*r31_at_a6 + flange_y*r32_at_a6 + flange_z*r33_at_a5
+        z_minus_a3 = z - a3
         a2 = axis_a2 - offset_a2
         r21_at_a6 = cos_a5*sin_a6
         r22_at_a6 = cos_a5*cos_a6
         y = a2 + flange_x*r21_at_a6 + flange_y*r22_at_a6 - flange_z*sin_a5
+        y_minus_a2 = y - a2
         a1 = axis_a1 - offset_a1
-        r13_at_a5 = cos_a5*sin_a4
         r12_at_a5 = sin_a4*sin_a5
         r11_at_a6 = cos_a4*cos_a6 + r12_at_a5*sin_a6
         r12_at_a6 = r12_at_a5*cos_a6 - cos_a4*sin_a6
         x = a1 + flange_x*r11_at_a6 + flange_y*r12_at_a6 + flange_z*r13_at_a5
+        x_minus_a1 = x - a1
         return (
-            (1.0, 0.0, 0.0, z - a3, (y - a2)*sin_a4, -(y - a2)*r33_at_a5 - (z - a3)*sin_a5),
-            (0.0, 1.0, 0.0, 0.0, -(z - a3)*cos_a4 - (x - a1)*sin_a4, (x - a1)*r33_at_a5 - (z - a3)*r13_at_a5),
-            (0.0, 0.0, 1.0, a1 - x, (y - a2)*cos_a4, (y - a2)*r13_at_a5 + (x - a1)*sin_a5),
+            (1.0, 0.0, 0.0, z_minus_a3, y_minus_a2*sin_a4, -r33_at_a5*y_minus_a2 - z_minus_a3*sin_a5),
+            (0.0, 1.0, 0.0, 0.0, -z_minus_a3*cos_a4 - x_minus_a1*sin_a4, r33_at_a5*x_minus_a1 - r13_at_a5*z_minus_a3),
+            (0.0, 0.0, 1.0, -x_minus_a1, y_minus_a2*cos_a4, r13_at_a5*y_minus_a2 + x_minus_a1*sin_a5),
             (0.0, 0.0, 0.0, 0.0, cos_a4, r13_at_a5),
             (0.0, 0.0, 0.0, 1.0, 0.0, -sin_a5),
             (0.0, 0.0, 0.0, 0.0, -sin_a4, r33_at_a5),

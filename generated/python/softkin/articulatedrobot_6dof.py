@@ -28,9 +28,9 @@ Singularities:
     a4_parallel_a6: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 66 additions, 68 multiplications, 8 divisions, 0 square roots, 14 sines
-    inverse: 158 additions, 165 multiplications, 41 divisions, 9 square roots, 12 sines
-    inverse, all 8 branches open: 1033 additions, 1005 multiplications, 265 divisions, 58 square roots, 96 sines
+    forward: 65 additions, 66 multiplications, 8 divisions, 0 square roots, 14 sines
+    inverse: 152 additions, 142 multiplications, 35 divisions, 9 square roots, 12 sines
+    inverse, all 8 branches open: 985 additions, 821 multiplications, 217 divisions, 58 square roots, 96 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -129,6 +129,17 @@ class Constants(NamedTuple):
     rounding_q1: float
     swing_scale_q3: float
     size_q1_for_q3: float
+    size_q1_for_q3_times_rounding: float
+    machine_scale_times_free_angle: float
+    machine_scale_squared_times_plane: float
+    machine_scale_times_rounding: float
+    swing_scale_q3_squared_times_rounding: float
+    a2_squared_plus_effective_q3_squared: float
+    twice_d3: float
+    a2_plus_effective_q3: float
+    a2_minus_effective_q3: float
+    d4_by_effective_q3: float
+    a3_by_effective_q3: float
 
 
 class ArticulatedRobot6DOF(Mechanism):
@@ -454,6 +465,17 @@ class ArticulatedRobot6DOF(Mechanism):
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
         swing_scale_q3 = 2.0*a2*effective_q3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         size_q1_for_q3 = 2.0*abs(effective_q3)*a2
+        size_q1_for_q3_times_rounding = 1e-12*size_q1_for_q3
+        machine_scale_times_free_angle = 1e-11*machine_scale
+        machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
+        machine_scale_times_rounding = 1e-12*machine_scale
+        swing_scale_q3_squared_times_rounding = 1e-12*swing_scale_q3*swing_scale_q3
+        a2_squared_plus_effective_q3_squared = a2*a2 + effective_q3*effective_q3
+        twice_d3 = 2.0*d3
+        a2_plus_effective_q3 = a2 + effective_q3
+        a2_minus_effective_q3 = a2 - effective_q3
+        d4_by_effective_q3 = d4/effective_q3
+        a3_by_effective_q3 = a3/effective_q3
         return Constants(
             d1=d1, a1=a1, a2=a2, d3=d3, a3=a3, d4=d4, d6=d6, offset_a1=offset_a1, offset_a2=offset_a2,
             offset_a3=offset_a3, offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6,
@@ -469,6 +491,14 @@ class ArticulatedRobot6DOF(Mechanism):
             upper_a6=effective_upper_a6, unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6,
             single_a6=single_a6, mid_a6=mid_a6, machine_scale=machine_scale, effective_q3=effective_q3,
             rounding_q1=rounding_q1, swing_scale_q3=swing_scale_q3, size_q1_for_q3=size_q1_for_q3,
+            size_q1_for_q3_times_rounding=size_q1_for_q3_times_rounding,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            machine_scale_squared_times_plane=machine_scale_squared_times_plane,
+            machine_scale_times_rounding=machine_scale_times_rounding,
+            swing_scale_q3_squared_times_rounding=swing_scale_q3_squared_times_rounding,
+            a2_squared_plus_effective_q3_squared=a2_squared_plus_effective_q3_squared, twice_d3=twice_d3,
+            a2_plus_effective_q3=a2_plus_effective_q3, a2_minus_effective_q3=a2_minus_effective_q3,
+            d4_by_effective_q3=d4_by_effective_q3, a3_by_effective_q3=a3_by_effective_q3,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -496,46 +526,49 @@ class ArticulatedRobot6DOF(Mechanism):
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
+        q5 = DEGREE*(axis_a5 - offset_a5)
+        sin_q5 = sin(q5)
         q1 = DEGREE*(axis_a1 - offset_a1)
         cos_q1 = cos(q1)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        cos_q23 = cos(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
         r12_at_q23 = -cos_q1*cos_q23
         sin_q1 = sin(q1)
-        x_at_q2 = a1*cos_q1
-        sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r11_at_q2
-        sin_q23 = sin(q2 + q3)
+        sin_q23 = sin(q2_plus_q3)
         r11_at_q23 = -cos_q1*sin_q23
-        x_at_q4 = x_at_q3 + a3*r11_at_q23 + d3*sin_q1
-        x_at_q5 = x_at_q4 - d4*r12_at_q23
         q4 = DEGREE*(axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
         r11_at_q4 = r11_at_q23*cos_q4 + sin_q1*sin_q4
-        q5 = DEGREE*(axis_a5 - offset_a5)
-        sin_q5 = sin(q5)
         cos_q5 = cos(q5)
         r12_at_q5 = -r12_at_q23*cos_q5 - r11_at_q4*sin_q5
-        x = x_at_q5 + d6*r12_at_q5
+        x_at_q2 = a1*cos_q1
+        sin_q2 = sin(q2)
+        r11_at_q2 = -cos_q1*sin_q2
+        x_at_q3 = x_at_q2 + a2*r11_at_q2
+        x_at_q4 = x_at_q3 + a3*r11_at_q23 + d3*sin_q1
+        x_at_q5 = x_at_q4 - d4*r12_at_q23
+        d6_times_r12_at_q5 = d6*r12_at_q5
+        x = d6_times_r12_at_q5 + x_at_q5
         r22_at_q23 = -cos_q23*sin_q1
+        r21_at_q23 = -sin_q1*sin_q23
+        r21_at_q4 = r21_at_q23*cos_q4 - cos_q1*sin_q4
+        r22_at_q5 = -r22_at_q23*cos_q5 - r21_at_q4*sin_q5
         y_at_q2 = a1*sin_q1
         r21_at_q2 = -sin_q1*sin_q2
         y_at_q3 = y_at_q2 + a2*r21_at_q2
-        r21_at_q23 = -sin_q1*sin_q23
         y_at_q4 = y_at_q3 + a3*r21_at_q23 - d3*cos_q1
         y_at_q5 = y_at_q4 - d4*r22_at_q23
-        r21_at_q4 = r21_at_q23*cos_q4 - cos_q1*sin_q4
-        r22_at_q5 = -r22_at_q23*cos_q5 - r21_at_q4*sin_q5
-        y = y_at_q5 + d6*r22_at_q5
+        d6_times_r22_at_q5 = d6*r22_at_q5
+        y = d6_times_r22_at_q5 + y_at_q5
+        r31_at_q4 = cos_q23*cos_q4
+        r32_at_q5 = cos_q5*sin_q23 - r31_at_q4*sin_q5
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2*cos_q2
         z_at_q4 = z_at_q3 + a3*cos_q23
         z_at_q5 = z_at_q4 + d4*sin_q23
-        r31_at_q4 = cos_q23*cos_q4
-        r32_at_q5 = cos_q5*sin_q23 - r31_at_q4*sin_q5
         z = z_at_q5 + d6*r32_at_q5
         r12_at_q4 = cos_q4*sin_q1 - r11_at_q23*sin_q4
         r11_at_q5 = r11_at_q4*cos_q5 - r12_at_q23*sin_q5
@@ -552,8 +585,8 @@ class ArticulatedRobot6DOF(Mechanism):
         r31_at_q5 = r31_at_q4*cos_q5 + sin_q23*sin_q5
         r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
         r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6*r12_at_q5  # the point that the last joints turn about
-        wrist_y = y - d6*r22_at_q5
+        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
+        wrist_y = y - d6_times_r22_at_q5
         branch_arm = (wrist_x*cos_q1 + wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
@@ -585,13 +618,14 @@ class ArticulatedRobot6DOF(Mechanism):
         cos_q1 = cos(q1)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        sin_q23 = sin(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        sin_q23 = sin(q2_plus_q3)
         r11_at_q23 = -cos_q1*sin_q23
         q4 = DEGREE*(axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
         r12_at_q4 = cos_q4*sin_q1 - r11_at_q23*sin_q4
-        cos_q23 = cos(q2 + q3)
+        cos_q23 = cos(q2_plus_q3)
         r12_at_q23 = -cos_q1*cos_q23
         r11_at_q4 = r11_at_q23*cos_q4 + sin_q1*sin_q4
         q5 = DEGREE*(axis_a5 - offset_a5)
@@ -636,13 +670,18 @@ class ArticulatedRobot6DOF(Mechanism):
         k = self._constants
         a1 = k.a1
         a2 = k.a2
-        a3 = k.a3
+        a2_minus_effective_q3 = k.a2_minus_effective_q3
+        a2_plus_effective_q3 = k.a2_plus_effective_q3
+        a2_squared_plus_effective_q3_squared = k.a2_squared_plus_effective_q3_squared
+        a3_by_effective_q3 = k.a3_by_effective_q3
         d1 = k.d1
         d3 = k.d3
-        d4 = k.d4
+        d4_by_effective_q3 = k.d4_by_effective_q3
         d6 = k.d6
         effective_q3 = k.effective_q3
-        machine_scale = k.machine_scale
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding = k.machine_scale_times_rounding
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -663,7 +702,9 @@ class ArticulatedRobot6DOF(Mechanism):
         single_a5 = k.single_a5
         single_a6 = k.single_a6
         size_q1_for_q3 = k.size_q1_for_q3
-        swing_scale_q3 = k.swing_scale_q3
+        size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
+        swing_scale_q3_squared_times_rounding = k.swing_scale_q3_squared_times_rounding
+        twice_d3 = k.twice_d3
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -675,23 +716,25 @@ class ArticulatedRobot6DOF(Mechanism):
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
-        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
-            missing = 0.5*abs(d3 - distance_q1) + 0.5*abs(d3 + distance_q1) - distance_q1
+        if not (ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1):
+            missing = 0.5*(abs(d3 - distance_q1) + abs(d3 + distance_q1)) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+        wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
         wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
         # a later step needs this of q1: no larger in size than
         value_q1_for_q3 = (
-            wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 + wrist_y_from_q1*wrist_y_from_q1
-            - a2*a2 - effective_q3*effective_q3
+            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+            - a2_squared_plus_effective_q3_squared
         )
-        rate_q1_for_q3 = -2.0*d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+        rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
         # to the boundary of the later step
-        if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
+        if abs(rate_q1_for_q3) > size_q1_for_q3_times_rounding:
             excess_q1_for_q3 = (
                 value_q1_for_q3 - size_q1_for_q3
                 if value_q1_for_q3 > 0.0
@@ -701,52 +744,56 @@ class ArticulatedRobot6DOF(Mechanism):
         else:
             turn_q1_for_q3 = 0.0
         turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)/turned_length_q1_for_q3
+        one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
+        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
         # its reference where it is free
-        if distance_q1 > 1e-11*machine_scale:
-            divisor_q1 = distance_q1*distance_q1
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/divisor_q1
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/divisor_q1
+        if distance_q1 > machine_scale_times_free_angle:
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/distance_q1_squared
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/distance_q1_squared
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
         turned_cos_q1_for_q3 = (
-            (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+            one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
         )
         turned_sin_q1_for_q3 = (
-            (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+            one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
         )
         # what is left of its own equation
         turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
         # turned within rounding, where the rest can be reached
         ahead_q1 = (
             ahead_q1_before_q1_for_q3
-            if ahead_squared_q1 > 1e-6*machine_scale*machine_scale
+            if ahead_squared_q1 > machine_scale_squared_times_plane
             else (
                 ahead_q1_before_q1_for_q3
                 if abs(value_q1_for_q3) <= size_q1_for_q3
                 else (
                     ahead_q1_before_q1_for_q3
-                    if turned_cost_q1_for_q3 > 1e-12*machine_scale
+                    if turned_cost_q1_for_q3 > machine_scale_times_rounding
                     else turned_ahead_q1_for_q3
                 )
             )
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (effective_q3 + reach - a2)*(a2 + reach - effective_q3)  # 1 + cosine, times the scale
+        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
+        one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)  # 1 - cosine, times the scale
+        # 1 + cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        if not (sine_square_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
+        if not (sine_square_q3 >= -swing_scale_q3_squared_times_rounding):
             missing = (
-                0.5*abs(effective_q3 + reach - a2) + 0.5*abs(a2 + reach - effective_q3)
-                + 0.5*abs(a2 + effective_q3 - reach) + 0.5*abs(a2 + effective_q3 + reach) - a2 - effective_q3 - reach
+                0.5*(
+                    abs(a2_minus_effective_q3 - reach) + abs(a2_minus_effective_q3 + reach)
+                    + abs(a2_plus_effective_q3 - reach) + abs(a2_plus_effective_q3 + reach)
+                )
+                - a2_plus_effective_q3 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # turned within rounding, where the rest can be reached
-        if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
+        if ahead_squared_q1 > machine_scale_squared_times_plane:
             cos_q1 = cos_q1_before_q1_for_q3
             sin_q1 = sin_q1_before_q1_for_q3
         else:
@@ -756,7 +803,7 @@ class ArticulatedRobot6DOF(Mechanism):
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
                 # turned within rounding, where the rest can be reached
-                if turned_cost_q1_for_q3 > 1e-12*machine_scale:
+                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
                 else:
@@ -772,15 +819,16 @@ class ArticulatedRobot6DOF(Mechanism):
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         # its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
             across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+            across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2
             length_q2 = (
-                sqrt(across_q2*across_q2 + along_q2*along_q2)
-                if across_q2*across_q2 + along_q2*along_q2 > 0.0
+                sqrt(across_q2_squared_plus_along_q2_squared)
+                if across_q2_squared_plus_along_q2_squared > 0.0
                 else 1.0
             )
             cos_q2 = along_q2/length_q2
@@ -794,8 +842,8 @@ class ArticulatedRobot6DOF(Mechanism):
         axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
-        sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
+        cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3
+        sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
@@ -950,42 +998,45 @@ class ArticulatedRobot6DOF(Mechanism):
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
+        q5 = DEGREE*(axis_a5 - offset_a5)
+        sin_q5 = sin(q5)
         q1 = DEGREE*(axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        cos_q23 = cos(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
         r12_at_q23 = -cos_q1*cos_q23
-        sin_q23 = sin(q2 + q3)
+        sin_q23 = sin(q2_plus_q3)
         r11_at_q23 = -cos_q1*sin_q23
         q4 = DEGREE*(axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
         r11_at_q4 = r11_at_q23*cos_q4 + sin_q1*sin_q4
-        q5 = DEGREE*(axis_a5 - offset_a5)
-        sin_q5 = sin(q5)
         cos_q5 = cos(q5)
         r12_at_q5 = -r12_at_q23*cos_q5 - r11_at_q4*sin_q5
+        d6_times_r12_at_q5 = d6*r12_at_q5
         x_at_q2 = a1*cos_q1
         sin_q2 = sin(q2)
         r11_at_q2 = -cos_q1*sin_q2
         x_at_q3 = x_at_q2 + a2*r11_at_q2
         x_at_q4 = x_at_q3 + a3*r11_at_q23 + d3*sin_q1
         x_at_q5 = x_at_q4 - d4*r12_at_q23
-        x = x_at_q5 + d6*r12_at_q5
-        wrist_x = x - d6*r12_at_q5  # the point that the last joints turn about
+        x = d6_times_r12_at_q5 + x_at_q5
+        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
         r22_at_q23 = -cos_q23*sin_q1
         r21_at_q23 = -sin_q1*sin_q23
         r21_at_q4 = r21_at_q23*cos_q4 - cos_q1*sin_q4
         r22_at_q5 = -r22_at_q23*cos_q5 - r21_at_q4*sin_q5
+        d6_times_r22_at_q5 = d6*r22_at_q5
         y_at_q2 = a1*sin_q1
         r21_at_q2 = -sin_q1*sin_q2
         y_at_q3 = y_at_q2 + a2*r21_at_q2
         y_at_q4 = y_at_q3 + a3*r21_at_q23 - d3*cos_q1
         y_at_q5 = y_at_q4 - d4*r22_at_q23
-        y = y_at_q5 + d6*r22_at_q5
-        wrist_y = y - d6*r22_at_q5
+        y = d6_times_r22_at_q5 + y_at_q5
+        wrist_y = y - d6_times_r22_at_q5
         margin_wrist_on_axis_1 = (wrist_x*cos_q1 + wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
@@ -1018,17 +1069,16 @@ class ArticulatedRobot6DOF(Mechanism):
         sin_q1 = sin(q1)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        cos_q23 = cos(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
         r22_at_q23 = -cos_q23*sin_q1
         cos_q1 = cos(q1)
         y_at_q2 = a1*sin_q1
         sin_q2 = sin(q2)
         r21_at_q2 = -sin_q1*sin_q2
         y_at_q3 = y_at_q2 + a2*r21_at_q2
-        sin_q23 = sin(q2 + q3)
+        sin_q23 = sin(q2_plus_q3)
         r21_at_q23 = -sin_q1*sin_q23
-        y_at_q4 = y_at_q3 + a3*r21_at_q23 - d3*cos_q1
-        y_at_q5 = y_at_q4 - d4*r22_at_q23
         q4 = DEGREE*(axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
@@ -1037,14 +1087,11 @@ class ArticulatedRobot6DOF(Mechanism):
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
         r22_at_q5 = -r22_at_q23*cos_q5 - r21_at_q4*sin_q5
+        y_at_q4 = y_at_q3 + a3*r21_at_q23 - d3*cos_q1
+        y_at_q5 = y_at_q4 - d4*r22_at_q23
         y = y_at_q5 + d6*r22_at_q5
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z_at_q4 = z_at_q3 + a3*cos_q23
-        z_at_q5 = z_at_q4 + d4*sin_q23
         r31_at_q4 = cos_q23*cos_q4
         r32_at_q5 = cos_q5*sin_q23 - r31_at_q4*sin_q5
-        z = z_at_q5 + d6*r32_at_q5
         r22_at_q4 = -cos_q1*cos_q4 - r21_at_q23*sin_q4
         r32_at_q4 = -cos_q23*sin_q4
         r12_at_q23 = -cos_q1*cos_q23
@@ -1052,36 +1099,42 @@ class ArticulatedRobot6DOF(Mechanism):
         r11_at_q2 = -cos_q1*sin_q2
         x_at_q3 = x_at_q2 + a2*r11_at_q2
         r11_at_q23 = -cos_q1*sin_q23
-        x_at_q4 = x_at_q3 + a3*r11_at_q23 + d3*sin_q1
-        x_at_q5 = x_at_q4 - d4*r12_at_q23
         r11_at_q4 = r11_at_q23*cos_q4 + sin_q1*sin_q4
         r12_at_q5 = -r12_at_q23*cos_q5 - r11_at_q4*sin_q5
+        x_at_q4 = x_at_q3 + a3*r11_at_q23 + d3*sin_q1
+        x_at_q5 = x_at_q4 - d4*r12_at_q23
         x = x_at_q5 + d6*r12_at_q5
         r12_at_q4 = cos_q4*sin_q1 - r11_at_q23*sin_q4
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2*cos_q2
+        z_at_q4 = z_at_q3 + a3*cos_q23
+        z_at_q5 = z_at_q4 + d4*sin_q23
+        z = z_at_q5 + d6*r32_at_q5
+        z_minus_d1 = z - d1
+        z_minus_z_at_q3 = z - z_at_q3
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        y_minus_y_at_q5 = y - y_at_q5
+        z_minus_z_at_q5 = z - z_at_q5
+        x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q5 = x - x_at_q5
         return (
             (
-                -y,
-                -(z - d1)*cos_q1,
-                -(z - z_at_q3)*cos_q1,
-                -r22_at_q23*(z - z_at_q4) - (y - y_at_q4)*sin_q23,
-                r32_at_q4*(y - y_at_q5) - r22_at_q4*(z - z_at_q5),
-                r22_at_q5*(z - z_at_q5) - r32_at_q5*(y - y_at_q5),
+                -y, -z_minus_d1*cos_q1, -z_minus_z_at_q3*cos_q1,
+                -r22_at_q23*z_minus_z_at_q4 - y_minus_y_at_q4*sin_q23,
+                r32_at_q4*y_minus_y_at_q5 - r22_at_q4*z_minus_z_at_q5,
+                r22_at_q5*z_minus_z_at_q5 - r32_at_q5*y_minus_y_at_q5,
             ),
             (
-                x,
-                -(z - d1)*sin_q1,
-                -(z - z_at_q3)*sin_q1,
-                r12_at_q23*(z - z_at_q4) + (x - x_at_q4)*sin_q23,
-                r12_at_q4*(z - z_at_q5) - r32_at_q4*(x - x_at_q5),
-                r32_at_q5*(x - x_at_q5) - r12_at_q5*(z - z_at_q5),
+                x, -z_minus_d1*sin_q1, -z_minus_z_at_q3*sin_q1, r12_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23,
+                r12_at_q4*z_minus_z_at_q5 - r32_at_q4*x_minus_x_at_q5,
+                r32_at_q5*x_minus_x_at_q5 - r12_at_q5*z_minus_z_at_q5,
             ),
             (
-                0.0,
-                (x - x_at_q2)*cos_q1 + (y - y_at_q2)*sin_q1,
-                (x - x_at_q3)*cos_q1 + (y - y_at_q3)*sin_q1,
-                r22_at_q23*(x - x_at_q4) - r12_at_q23*(y - y_at_q4),
-                r22_at_q4*(x - x_at_q5) - r12_at_q4*(y - y_at_q5),
-                r12_at_q5*(y - y_at_q5) - r22_at_q5*(x - x_at_q5),
+                0.0, (x - x_at_q2)*cos_q1 + (y - y_at_q2)*sin_q1, (x - x_at_q3)*cos_q1 + (y - y_at_q3)*sin_q1,
+                r22_at_q23*x_minus_x_at_q4 - r12_at_q23*y_minus_y_at_q4,
+                r22_at_q4*x_minus_x_at_q5 - r12_at_q4*y_minus_y_at_q5,
+                r12_at_q5*y_minus_y_at_q5 - r22_at_q5*x_minus_x_at_q5,
             ),
             (0.0, sin_q1, sin_q1, -r12_at_q23, -r12_at_q4, r12_at_q5),
             (0.0, -cos_q1, -cos_q1, -r22_at_q23, -r22_at_q4, r22_at_q5),

@@ -310,11 +310,11 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
             return Status.BAD_INPUT
         flange_along = flange_axis_z*tool_z  # what the flange holds, along the axis that it turns about
+        part_of_flange_offset = tool_z - flange_along*flange_axis_z
         # off the axis that the flange turns about
         flange_offset = root(
-            (tool_z - flange_along*flange_axis_z)*(tool_z - flange_along*flange_axis_z)
-            + flange_along*flange_along*flange_axis_x*flange_axis_x
-            + flange_along*flange_along*flange_axis_y*flange_axis_y
+            part_of_flange_offset*part_of_flange_offset
+            + flange_along*flange_along*(flange_axis_x*flange_axis_x + flange_axis_y*flange_axis_y)
         )
         # a part of the end point turns with the flange
         if not (flange_offset <= unnoticed_shift and unmet_offset <= unnoticed_shift):
@@ -359,9 +359,8 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
+        cos_heading = heading_along/heading_length
+        sin_heading = heading_across/heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

@@ -17,8 +17,8 @@ Singularities:
     length that a distance from there could be compared with
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 11 additions, 7 multiplications, 1 divisions, 0 square roots, 4 sines
-    inverse: 26 additions, 22 multiplications, 7 divisions, 2 square roots, 6 sines
+    forward: 7 additions, 6 multiplications, 1 divisions, 0 square roots, 4 sines
+    inverse: 21 additions, 13 multiplications, 6 divisions, 2 square roots, 6 sines
 
 On the vertical the azimuth is the reference's; at the origin the polar angle is too.
 
@@ -81,6 +81,7 @@ class Constants(NamedTuple):
     lowest_phi: float
     highest_phi: float
     machine_scale: float
+    machine_scale_times_free_angle: float
 
 
 class Crane(OffsetKinematics):
@@ -255,6 +256,7 @@ class Crane(OffsetKinematics):
         lowest_phi = -1e12 if unlimited_phi else effective_lower_phi - tolerance_phi
         highest_phi = 1e12 if unlimited_phi else effective_upper_phi + tolerance_phi
         machine_scale = 1.0  # a length of the machine
+        machine_scale_times_free_angle = 1e-11*machine_scale
         return Constants(
             offset_r=offset_r, offset_theta=offset_theta, offset_phi=offset_phi, check_limits=check_limits,
             lower_r=effective_lower_r, upper_r=effective_upper_r, unlimited_r=unlimited_r, lowest_r=lowest_r,
@@ -263,6 +265,7 @@ class Crane(OffsetKinematics):
             single_theta=single_theta, mid_theta=mid_theta, lower_phi=effective_lower_phi,
             upper_phi=effective_upper_phi, unlimited_phi=unlimited_phi, lowest_phi=lowest_phi,
             highest_phi=highest_phi, machine_scale=machine_scale,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -275,20 +278,22 @@ class Crane(OffsetKinematics):
         # numbers of reasonable size
         if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
-        # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
-            return Status.IMPOSSIBLE
-        # Phi where the machine has no pose
-        if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
-            return Status.IMPOSSIBLE
         r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
+        axis_phi_minus_offset_phi = axis_phi - offset_phi
+        # Phi where the machine has no pose
+        if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
+            return Status.IMPOSSIBLE
         theta = DEGREE*(axis_theta - offset_theta)
         cos_theta = cos(theta)
-        phi = DEGREE*(axis_phi - offset_phi)
+        phi = DEGREE*axis_phi_minus_offset_phi
         sin_phi = sin(phi)
-        x = r*cos_theta*sin_phi  # x: affine in the x equation
+        r_times_sin_phi = r*sin_phi
+        x = r_times_sin_phi*cos_theta  # x: affine in the x equation
         sin_theta = sin(theta)
-        y = r*sin_phi*sin_theta  # y: affine in the y equation
+        y = r_times_sin_phi*sin_theta  # y: affine in the y equation
         cos_phi = cos(phi)
         z = r*cos_phi  # z: affine in the z equation
         return ((x, y, z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ())
@@ -302,11 +307,13 @@ class Crane(OffsetKinematics):
         # numbers of reasonable size
         if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
+        axis_r_minus_offset_r = axis_r - offset_r
         # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
+        if not (axis_r_minus_offset_r >= -1e-9 and axis_r_minus_offset_r <= 1000000001.0):
             return Status.IMPOSSIBLE
+        axis_phi_minus_offset_phi = axis_phi - offset_phi
         # Phi where the machine has no pose
-        if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
+        if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -318,7 +325,7 @@ class Crane(OffsetKinematics):
         (turn_theta,) = turns
         _, ref_theta, ref_phi = reference
         k = self._constants
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_theta = k.mid_theta
         offset_phi = k.offset_phi
         offset_r = k.offset_r
@@ -334,7 +341,7 @@ class Crane(OffsetKinematics):
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
         # its reference where it is free
-        if radius_theta > 1e-11*machine_scale:
+        if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
             direction_y_theta = y
         else:
@@ -347,13 +354,14 @@ class Crane(OffsetKinematics):
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
         # its reference where it is free
-        if radius_phi > 1e-11*machine_scale:
+        if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)
+            direction_x_phi = cos(part_of_direction_y_phi)
+            direction_y_phi = sin(part_of_direction_y_phi)
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         return (axis_r, axis_theta, axis_phi)
 
@@ -409,22 +417,24 @@ class Crane(OffsetKinematics):
         # numbers of reasonable size
         if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
-        # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
-            return Status.IMPOSSIBLE
-        # Phi where the machine has no pose
-        if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
-            return Status.IMPOSSIBLE
-        phi = DEGREE*(axis_phi - offset_phi)
-        sin_phi = sin(phi)
         r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
+        axis_phi_minus_offset_phi = axis_phi - offset_phi
+        # Phi where the machine has no pose
+        if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
+            return Status.IMPOSSIBLE
+        phi = DEGREE*axis_phi_minus_offset_phi
+        sin_phi = sin(phi)
         cos_phi = cos(phi)
         z = r*cos_phi  # z: affine in the z equation
         theta = DEGREE*(axis_theta - offset_theta)
         cos_theta = cos(theta)
-        x = r*cos_theta*sin_phi  # x: affine in the x equation
+        r_times_sin_phi = r*sin_phi
+        x = r_times_sin_phi*cos_theta  # x: affine in the x equation
         sin_theta = sin(theta)
-        y = r*sin_phi*sin_theta  # y: affine in the y equation
+        y = r_times_sin_phi*sin_theta  # y: affine in the y equation
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         length_free_phi = radius_phi/machine_scale
@@ -441,23 +451,26 @@ class Crane(OffsetKinematics):
         # numbers of reasonable size
         if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
+        r = axis_r - offset_r
         # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
+        if not (r >= -1e-9 and r <= 1000000001.0):
             return Status.IMPOSSIBLE
+        axis_phi_minus_offset_phi = axis_phi - offset_phi
         # Phi where the machine has no pose
-        if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
+        if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
         theta = DEGREE*(axis_theta - offset_theta)
         cos_theta = cos(theta)
-        phi = DEGREE*(axis_phi - offset_phi)
+        phi = DEGREE*axis_phi_minus_offset_phi
         sin_phi = sin(phi)
-        r = axis_r - offset_r
         sin_theta = sin(theta)
         cos_phi = cos(phi)
+        cos_phi_times_r = r*cos_phi
+        r_times_sin_phi = r*sin_phi
         return (
-            (cos_theta*sin_phi, -r*sin_phi*sin_theta, r*cos_phi*cos_theta),
-            (sin_phi*sin_theta, r*cos_theta*sin_phi, r*cos_phi*sin_theta),
-            (cos_phi, 0.0, -r*sin_phi),
+            (cos_theta*sin_phi, -r_times_sin_phi*sin_theta, cos_phi_times_r*cos_theta),
+            (sin_phi*sin_theta, r_times_sin_phi*cos_theta, cos_phi_times_r*sin_theta),
+            (cos_phi, 0.0, -r_times_sin_phi),
         )
 
     def _image(self) -> Image | Status:
@@ -473,7 +486,7 @@ class Crane(OffsetKinematics):
         (turn_theta,) = turns
         _, ref_theta, ref_phi = reference
         k = self._constants
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_theta = k.mid_theta
         offset_phi = k.offset_phi
         offset_r = k.offset_r
@@ -493,7 +506,7 @@ class Crane(OffsetKinematics):
         radius_phi = sqrt(flange_z*flange_z + radius_theta*radius_theta)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
         # its reference where it is free
-        if radius_theta > 1e-11*machine_scale:
+        if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = flange_x
             direction_y_theta = flange_y
         else:
@@ -506,13 +519,14 @@ class Crane(OffsetKinematics):
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
         # its reference where it is free
-        if radius_phi > 1e-11*machine_scale:
+        if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = flange_z
             direction_y_phi = radius_theta
         else:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)
+            direction_x_phi = cos(part_of_direction_y_phi)
+            direction_y_phi = sin(part_of_direction_y_phi)
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         return (axis_r, axis_theta, axis_phi)
 
@@ -525,11 +539,13 @@ class Crane(OffsetKinematics):
         # numbers of reasonable size
         if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
+        axis_r_minus_offset_r = axis_r - offset_r
         # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
+        if not (axis_r_minus_offset_r >= -1e-9 and axis_r_minus_offset_r <= 1000000001.0):
             return Status.IMPOSSIBLE
+        axis_phi_minus_offset_phi = axis_phi - offset_phi
         # Phi where the machine has no pose
-        if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
+        if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
         return ()
 

@@ -24,9 +24,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 82 additions, 122 multiplications, 10 divisions, 1 square roots, 6 sines
-    inverse: 120 additions, 135 multiplications, 28 divisions, 6 square roots, 3 sines
-    inverse, all 8 branches open: 953 additions, 1080 multiplications, 224 divisions, 48 square roots, 24 sines
+    forward: 68 additions, 70 multiplications, 7 divisions, 1 square roots, 6 sines
+    inverse: 99 additions, 83 multiplications, 21 divisions, 6 square roots, 3 sines
+    inverse, all 8 branches open: 785 additions, 664 multiplications, 168 divisions, 48 square roots, 24 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -115,6 +115,50 @@ class Constants(NamedTuple):
     cos_azimuth_2: float
     cos_azimuth_3: float
     assembly_sign: float
+    sin_azimuth_1_times_tcp_radius_1: float
+    sin_azimuth_2_times_tcp_radius_2: float
+    sin_azimuth_3_times_tcp_radius_3: float
+    cos_azimuth_1_times_tcp_radius_1: float
+    cos_azimuth_2_times_tcp_radius_2: float
+    cos_azimuth_3_times_tcp_radius_3: float
+    part_of_normal_divisor: float
+    outer_arm_1_squared: float
+    outer_arm_1_squared_times_rounding: float
+    inner_arm_1_times_sin_azimuth_1: float
+    part_of_pivot_1_y: float
+    inner_arm_2_times_sin_azimuth_2: float
+    part_of_pivot_2_y: float
+    inner_arm_3_times_sin_azimuth_3: float
+    part_of_pivot_3_y: float
+    cos_azimuth_1_times_inner_arm_1: float
+    part_of_pivot_1_x: float
+    cos_azimuth_2_times_inner_arm_2: float
+    part_of_pivot_2_x: float
+    cos_azimuth_3_times_inner_arm_3: float
+    part_of_pivot_3_x: float
+    part_of_share_2: float
+    part_of_share_3: float
+    inner_arm_1_times_shortest_link: float
+    inner_arm_2_times_shortest_link: float
+    inner_arm_3_times_shortest_link: float
+    twice_inner_arm_1: float
+    twice_inner_arm_2: float
+    twice_inner_arm_3: float
+    part_of_type2_rods_coplanar: float
+    part_of_margin_rods_coplanar: float
+    part_of_determinant_divisor: float
+    twice_cos_azimuth_1: float
+    twice_sin_azimuth_1: float
+    twice_cos_azimuth_2: float
+    twice_sin_azimuth_2: float
+    twice_cos_azimuth_3: float
+    twice_sin_azimuth_3: float
+    inner_arm_1_times_sin_azimuth_1_times_2: float
+    cos_azimuth_1_times_inner_arm_1_times_2: float
+    inner_arm_2_times_sin_azimuth_2_times_2: float
+    cos_azimuth_2_times_inner_arm_2_times_2: float
+    inner_arm_3_times_sin_azimuth_3_times_2: float
+    cos_azimuth_3_times_inner_arm_3_times_2: float
 
 
 class DeltaP3CType3(OffsetKinematics):
@@ -482,6 +526,51 @@ class DeltaP3CType3(OffsetKinematics):
             if cos_azimuth_1*sin_azimuth_2 + cos_azimuth_2*sin_azimuth_3 + cos_azimuth_3*sin_azimuth_1 - cos_azimuth_1*sin_azimuth_3 - cos_azimuth_2*sin_azimuth_1 - cos_azimuth_3*sin_azimuth_2 > 0.0
             else (-1.0 if tcp_above else 1.0)
         )
+        sin_azimuth_1_times_tcp_radius_1 = tcp_radius_1*sin_azimuth_1
+        sin_azimuth_2_times_tcp_radius_2 = tcp_radius_2*sin_azimuth_2
+        sin_azimuth_3_times_tcp_radius_3 = tcp_radius_3*sin_azimuth_3
+        cos_azimuth_1_times_tcp_radius_1 = tcp_radius_1*cos_azimuth_1
+        cos_azimuth_2_times_tcp_radius_2 = tcp_radius_2*cos_azimuth_2
+        cos_azimuth_3_times_tcp_radius_3 = tcp_radius_3*cos_azimuth_3
+        part_of_normal_divisor = 1e-22*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1
+        outer_arm_1_squared = outer_arm_1*outer_arm_1
+        outer_arm_1_squared_times_rounding = 1e-12*outer_arm_1*outer_arm_1
+        inner_arm_1_times_sin_azimuth_1 = inner_arm_1*sin_azimuth_1
+        part_of_pivot_1_y = base_radius_1*sin_azimuth_1 - sin_azimuth_1_times_tcp_radius_1
+        inner_arm_2_times_sin_azimuth_2 = inner_arm_2*sin_azimuth_2
+        part_of_pivot_2_y = base_radius_2*sin_azimuth_2 - sin_azimuth_2_times_tcp_radius_2
+        inner_arm_3_times_sin_azimuth_3 = inner_arm_3*sin_azimuth_3
+        part_of_pivot_3_y = base_radius_3*sin_azimuth_3 - sin_azimuth_3_times_tcp_radius_3
+        cos_azimuth_1_times_inner_arm_1 = inner_arm_1*cos_azimuth_1
+        part_of_pivot_1_x = base_radius_1*cos_azimuth_1 - cos_azimuth_1_times_tcp_radius_1
+        cos_azimuth_2_times_inner_arm_2 = inner_arm_2*cos_azimuth_2
+        part_of_pivot_2_x = base_radius_2*cos_azimuth_2 - cos_azimuth_2_times_tcp_radius_2
+        cos_azimuth_3_times_inner_arm_3 = inner_arm_3*cos_azimuth_3
+        part_of_pivot_3_x = base_radius_3*cos_azimuth_3 - cos_azimuth_3_times_tcp_radius_3
+        outer_arm_1_squared_times_half = 0.5*outer_arm_1*outer_arm_1
+        part_of_share_2 = outer_arm_1_squared_times_half - 0.5*outer_arm_2*outer_arm_2
+        part_of_share_3 = outer_arm_1_squared_times_half - 0.5*outer_arm_3*outer_arm_3
+        inner_arm_1_times_shortest_link = 1e-9*inner_arm_1
+        inner_arm_2_times_shortest_link = 1e-9*inner_arm_2
+        inner_arm_3_times_shortest_link = 1e-9*inner_arm_3
+        twice_inner_arm_1 = 2.0*inner_arm_1
+        twice_inner_arm_2 = 2.0*inner_arm_2
+        twice_inner_arm_3 = 2.0*inner_arm_3
+        part_of_type2_rods_coplanar = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
+        part_of_margin_rods_coplanar = outer_arm_1*outer_arm_2*outer_arm_3
+        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
+        twice_cos_azimuth_1 = 2.0*cos_azimuth_1
+        twice_sin_azimuth_1 = 2.0*sin_azimuth_1
+        twice_cos_azimuth_2 = 2.0*cos_azimuth_2
+        twice_sin_azimuth_2 = 2.0*sin_azimuth_2
+        twice_cos_azimuth_3 = 2.0*cos_azimuth_3
+        twice_sin_azimuth_3 = 2.0*sin_azimuth_3
+        inner_arm_1_times_sin_azimuth_1_times_2 = 2.0*inner_arm_1*sin_azimuth_1
+        cos_azimuth_1_times_inner_arm_1_times_2 = 2.0*inner_arm_1*cos_azimuth_1
+        inner_arm_2_times_sin_azimuth_2_times_2 = 2.0*inner_arm_2*sin_azimuth_2
+        cos_azimuth_2_times_inner_arm_2_times_2 = 2.0*inner_arm_2*cos_azimuth_2
+        inner_arm_3_times_sin_azimuth_3_times_2 = 2.0*inner_arm_3*sin_azimuth_3
+        cos_azimuth_3_times_inner_arm_3_times_2 = 2.0*inner_arm_3*cos_azimuth_3
         return Constants(
             azimuth_1=azimuth_1, azimuth_2=azimuth_2, azimuth_3=azimuth_3, base_radius_1=base_radius_1,
             base_radius_2=base_radius_2, base_radius_3=base_radius_3, inner_arm_1=inner_arm_1,
@@ -496,7 +585,37 @@ class DeltaP3CType3(OffsetKinematics):
             highest_a3=highest_a3, single_a3=single_a3, mid_a3=mid_a3, machine_scale=machine_scale,
             sin_azimuth_1=sin_azimuth_1, sin_azimuth_2=sin_azimuth_2, sin_azimuth_3=sin_azimuth_3,
             cos_azimuth_1=cos_azimuth_1, cos_azimuth_2=cos_azimuth_2, cos_azimuth_3=cos_azimuth_3,
-            assembly_sign=assembly_sign,
+            assembly_sign=assembly_sign, sin_azimuth_1_times_tcp_radius_1=sin_azimuth_1_times_tcp_radius_1,
+            sin_azimuth_2_times_tcp_radius_2=sin_azimuth_2_times_tcp_radius_2,
+            sin_azimuth_3_times_tcp_radius_3=sin_azimuth_3_times_tcp_radius_3,
+            cos_azimuth_1_times_tcp_radius_1=cos_azimuth_1_times_tcp_radius_1,
+            cos_azimuth_2_times_tcp_radius_2=cos_azimuth_2_times_tcp_radius_2,
+            cos_azimuth_3_times_tcp_radius_3=cos_azimuth_3_times_tcp_radius_3,
+            part_of_normal_divisor=part_of_normal_divisor, outer_arm_1_squared=outer_arm_1_squared,
+            outer_arm_1_squared_times_rounding=outer_arm_1_squared_times_rounding,
+            inner_arm_1_times_sin_azimuth_1=inner_arm_1_times_sin_azimuth_1, part_of_pivot_1_y=part_of_pivot_1_y,
+            inner_arm_2_times_sin_azimuth_2=inner_arm_2_times_sin_azimuth_2, part_of_pivot_2_y=part_of_pivot_2_y,
+            inner_arm_3_times_sin_azimuth_3=inner_arm_3_times_sin_azimuth_3, part_of_pivot_3_y=part_of_pivot_3_y,
+            cos_azimuth_1_times_inner_arm_1=cos_azimuth_1_times_inner_arm_1, part_of_pivot_1_x=part_of_pivot_1_x,
+            cos_azimuth_2_times_inner_arm_2=cos_azimuth_2_times_inner_arm_2, part_of_pivot_2_x=part_of_pivot_2_x,
+            cos_azimuth_3_times_inner_arm_3=cos_azimuth_3_times_inner_arm_3, part_of_pivot_3_x=part_of_pivot_3_x,
+            part_of_share_2=part_of_share_2, part_of_share_3=part_of_share_3,
+            inner_arm_1_times_shortest_link=inner_arm_1_times_shortest_link,
+            inner_arm_2_times_shortest_link=inner_arm_2_times_shortest_link,
+            inner_arm_3_times_shortest_link=inner_arm_3_times_shortest_link, twice_inner_arm_1=twice_inner_arm_1,
+            twice_inner_arm_2=twice_inner_arm_2, twice_inner_arm_3=twice_inner_arm_3,
+            part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
+            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
+            part_of_determinant_divisor=part_of_determinant_divisor, twice_cos_azimuth_1=twice_cos_azimuth_1,
+            twice_sin_azimuth_1=twice_sin_azimuth_1, twice_cos_azimuth_2=twice_cos_azimuth_2,
+            twice_sin_azimuth_2=twice_sin_azimuth_2, twice_cos_azimuth_3=twice_cos_azimuth_3,
+            twice_sin_azimuth_3=twice_sin_azimuth_3,
+            inner_arm_1_times_sin_azimuth_1_times_2=inner_arm_1_times_sin_azimuth_1_times_2,
+            cos_azimuth_1_times_inner_arm_1_times_2=cos_azimuth_1_times_inner_arm_1_times_2,
+            inner_arm_2_times_sin_azimuth_2_times_2=inner_arm_2_times_sin_azimuth_2_times_2,
+            cos_azimuth_2_times_inner_arm_2_times_2=cos_azimuth_2_times_inner_arm_2_times_2,
+            inner_arm_3_times_sin_azimuth_3_times_2=inner_arm_3_times_sin_azimuth_3_times_2,
+            cos_azimuth_3_times_inner_arm_3_times_2=cos_azimuth_3_times_inner_arm_3_times_2,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -504,38 +623,47 @@ class DeltaP3CType3(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         assembly_sign = k.assembly_sign
-        base_radius_1 = k.base_radius_1
-        base_radius_2 = k.base_radius_2
-        base_radius_3 = k.base_radius_3
         cos_azimuth_1 = k.cos_azimuth_1
+        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
         cos_azimuth_2 = k.cos_azimuth_2
+        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
         cos_azimuth_3 = k.cos_azimuth_3
+        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
         inner_arm_1 = k.inner_arm_1
+        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
         inner_arm_2 = k.inner_arm_2
+        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
         inner_arm_3 = k.inner_arm_3
+        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         outer_arm_1 = k.outer_arm_1
+        outer_arm_1_squared = k.outer_arm_1_squared
+        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
         outer_arm_2 = k.outer_arm_2
         outer_arm_3 = k.outer_arm_3
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_1_x = k.part_of_pivot_1_x
+        part_of_pivot_1_y = k.part_of_pivot_1_y
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_3_x = k.part_of_pivot_3_x
+        part_of_pivot_3_y = k.part_of_pivot_3_y
+        part_of_share_2 = k.part_of_share_2
+        part_of_share_3 = k.part_of_share_3
         sin_azimuth_1 = k.sin_azimuth_1
         sin_azimuth_2 = k.sin_azimuth_2
         sin_azimuth_3 = k.sin_azimuth_3
-        tcp_radius_1 = k.tcp_radius_1
-        tcp_radius_2 = k.tcp_radius_2
-        tcp_radius_3 = k.tcp_radius_3
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        # rod 1
-        pivot_1_y = base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod 2
-        pivot_2_y = base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         apart_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
@@ -544,72 +672,58 @@ class DeltaP3CType3(OffsetKinematics):
         apart_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        # rod 3
-        pivot_3_y = base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         apart_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        # rod 1
-        pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
-        # rod 2
-        pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        # rod 3
-        pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = (
-            0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y + 0.5*apart_2_z*apart_2_z + 0.5*outer_arm_1*outer_arm_1
-            - 0.5*outer_arm_2*outer_arm_2
-        )
+        share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
         # how far centre 3 draws the foot
-        share_3 = (
-            0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y + 0.5*apart_3_z*apart_3_z + 0.5*outer_arm_1*outer_arm_1
-            - 0.5*outer_arm_3*outer_arm_3
-        )
+        share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = outer_arm_1*outer_arm_1 - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*outer_arm_1*outer_arm_1):
+        if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + pivot_1_y + normal_y*rise
         z = foot_z + pivot_1_z + normal_z*rise
-        span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
-        span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
-        branch_knee_1 = (-z*cos_a1 - span_1_x*cos_azimuth_1*sin_a1 - span_1_y*sin_a1*sin_azimuth_1)/outer_arm_1
-        span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
-        span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
-        branch_knee_2 = (-z*cos_a2 - span_2_x*cos_azimuth_2*sin_a2 - span_2_y*sin_a2*sin_azimuth_2)/outer_arm_2
-        span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
-        span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
-        branch_knee_3 = (-z*cos_a3 - span_3_x*cos_azimuth_3*sin_a3 - span_3_y*sin_a3*sin_azimuth_3)/outer_arm_3
+        span_1_x = x - part_of_pivot_1_x  # rod 1
+        span_1_y = y - part_of_pivot_1_y  # rod 1
+        branch_knee_1 = ((-span_1_x*cos_azimuth_1 - span_1_y*sin_azimuth_1)*sin_a1 - z*cos_a1)/outer_arm_1
+        span_2_x = x - part_of_pivot_2_x  # rod 2
+        span_2_y = y - part_of_pivot_2_y  # rod 2
+        branch_knee_2 = ((-span_2_x*cos_azimuth_2 - span_2_y*sin_azimuth_2)*sin_a2 - z*cos_a2)/outer_arm_2
+        span_3_x = x - part_of_pivot_3_x  # rod 3
+        span_3_y = y - part_of_pivot_3_y  # rod 3
+        branch_knee_3 = ((-span_3_x*cos_azimuth_3 - span_3_y*sin_azimuth_3)*sin_a3 - z*cos_a3)/outer_arm_3
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -620,38 +734,38 @@ class DeltaP3CType3(OffsetKinematics):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        base_radius_1 = k.base_radius_1
-        base_radius_2 = k.base_radius_2
-        base_radius_3 = k.base_radius_3
-        cos_azimuth_1 = k.cos_azimuth_1
-        cos_azimuth_2 = k.cos_azimuth_2
-        cos_azimuth_3 = k.cos_azimuth_3
+        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
+        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
+        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
         inner_arm_1 = k.inner_arm_1
+        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
         inner_arm_2 = k.inner_arm_2
+        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
         inner_arm_3 = k.inner_arm_3
+        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        outer_arm_1 = k.outer_arm_1
-        outer_arm_2 = k.outer_arm_2
-        outer_arm_3 = k.outer_arm_3
-        sin_azimuth_1 = k.sin_azimuth_1
-        sin_azimuth_2 = k.sin_azimuth_2
-        sin_azimuth_3 = k.sin_azimuth_3
-        tcp_radius_1 = k.tcp_radius_1
-        tcp_radius_2 = k.tcp_radius_2
-        tcp_radius_3 = k.tcp_radius_3
+        outer_arm_1_squared = k.outer_arm_1_squared
+        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_1_x = k.part_of_pivot_1_x
+        part_of_pivot_1_y = k.part_of_pivot_1_y
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_3_x = k.part_of_pivot_3_x
+        part_of_pivot_3_y = k.part_of_pivot_3_y
+        part_of_share_2 = k.part_of_share_2
+        part_of_share_3 = k.part_of_share_3
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        # rod 1
-        pivot_1_y = base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod 2
-        pivot_2_y = base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         apart_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
@@ -660,58 +774,44 @@ class DeltaP3CType3(OffsetKinematics):
         apart_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        # rod 3
-        pivot_3_y = base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         apart_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        # rod 1
-        pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
-        # rod 2
-        pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        # rod 3
-        pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = (
-            0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y + 0.5*apart_2_z*apart_2_z + 0.5*outer_arm_1*outer_arm_1
-            - 0.5*outer_arm_2*outer_arm_2
-        )
+        share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
         # how far centre 3 draws the foot
-        share_3 = (
-            0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y + 0.5*apart_3_z*apart_3_z + 0.5*outer_arm_1*outer_arm_1
-            - 0.5*outer_arm_3*outer_arm_3
-        )
+        share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = outer_arm_1*outer_arm_1 - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*outer_arm_1*outer_arm_1):
+        if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -724,16 +824,21 @@ class DeltaP3CType3(OffsetKinematics):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        assembly_sign = k.assembly_sign
-        base_radius_1 = k.base_radius_1
-        base_radius_2 = k.base_radius_2
-        base_radius_3 = k.base_radius_3
         cos_azimuth_1 = k.cos_azimuth_1
+        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
         cos_azimuth_2 = k.cos_azimuth_2
+        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
         cos_azimuth_3 = k.cos_azimuth_3
+        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
         inner_arm_1 = k.inner_arm_1
+        inner_arm_1_times_shortest_link = k.inner_arm_1_times_shortest_link
+        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
         inner_arm_2 = k.inner_arm_2
+        inner_arm_2_times_shortest_link = k.inner_arm_2_times_shortest_link
+        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
         inner_arm_3 = k.inner_arm_3
+        inner_arm_3_times_shortest_link = k.inner_arm_3_times_shortest_link
+        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -742,113 +847,123 @@ class DeltaP3CType3(OffsetKinematics):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         outer_arm_1 = k.outer_arm_1
+        outer_arm_1_squared = k.outer_arm_1_squared
         outer_arm_2 = k.outer_arm_2
         outer_arm_3 = k.outer_arm_3
+        part_of_pivot_1_x = k.part_of_pivot_1_x
+        part_of_pivot_1_y = k.part_of_pivot_1_y
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_3_x = k.part_of_pivot_3_x
+        part_of_pivot_3_y = k.part_of_pivot_3_y
+        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         sin_azimuth_1 = k.sin_azimuth_1
         sin_azimuth_2 = k.sin_azimuth_2
         sin_azimuth_3 = k.sin_azimuth_3
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        tcp_radius_1 = k.tcp_radius_1
-        tcp_radius_2 = k.tcp_radius_2
-        tcp_radius_3 = k.tcp_radius_3
+        twice_inner_arm_1 = k.twice_inner_arm_1
+        twice_inner_arm_2 = k.twice_inner_arm_2
+        twice_inner_arm_3 = k.twice_inner_arm_3
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
-        span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
+        span_1_x = x - part_of_pivot_1_x  # rod 1
+        span_1_y = y - part_of_pivot_1_y  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
-        effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
+        z_squared = z*z
+        effective_a1 = root(z_squared + along_a1*along_a1)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*inner_arm_1):
+        if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = effective_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
+        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
         # square of the third side
-        third_square_a1 = (
-            (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
-            *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
-        )
+        third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
+        divisor_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
         # 1 - cosine, times the scale
-        one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        one_less_cos_a1 = third_square_a1 - divisor_a1_minus_inner_arm_1*divisor_a1_minus_inner_arm_1
+        divisor_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        one_plus_cos_a1 = divisor_a1_plus_inner_arm_1*divisor_a1_plus_inner_arm_1 - third_square_a1
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             missing = abs(
                 outer_arm_1
                 - root(
-                    0.5*abs(third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1))
-                    + outer_arm_1*outer_arm_1 + 0.5*(divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
-                    + 0.5*(divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
-                    - 0.5*abs(third_square_a1 - (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1))
+                    outer_arm_1_squared
+                    + 0.5*(
+                        abs(one_less_cos_a1) + divisor_a1_minus_inner_arm_1*divisor_a1_minus_inner_arm_1
+                        + divisor_a1_plus_inner_arm_1*divisor_a1_plus_inner_arm_1 - abs(one_plus_cos_a1)
+                    )
+                    - third_square_a1
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
-        span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2
+        span_2_y = y - part_of_pivot_2_y  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
+        effective_a2 = root(z_squared + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*inner_arm_2):
+        if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = effective_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
+        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
         # square of the third side
-        third_square_a2 = (
-            (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
-            *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
-        )
+        third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
+        divisor_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
         # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        one_less_cos_a2 = third_square_a2 - divisor_a2_minus_inner_arm_2*divisor_a2_minus_inner_arm_2
+        divisor_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        one_plus_cos_a2 = divisor_a2_plus_inner_arm_2*divisor_a2_plus_inner_arm_2 - third_square_a2
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             missing = abs(
                 outer_arm_2
                 - root(
-                    0.5*abs(third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2))
-                    + outer_arm_2*outer_arm_2 + 0.5*(divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
-                    + 0.5*(divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
-                    - 0.5*abs(third_square_a2 - (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2))
+                    0.5*(
+                        abs(one_less_cos_a2) + divisor_a2_minus_inner_arm_2*divisor_a2_minus_inner_arm_2
+                        + divisor_a2_plus_inner_arm_2*divisor_a2_plus_inner_arm_2 - abs(one_plus_cos_a2)
+                    )
+                    + outer_arm_2*outer_arm_2 - third_square_a2
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
-        span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
+        span_3_x = x - part_of_pivot_3_x  # rod 3
+        span_3_y = y - part_of_pivot_3_y  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
+        effective_a3 = root(z_squared + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > 1e-9*inner_arm_3):
+        if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
-        swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
+        swing_scale_a3 = effective_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
+        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
         # square of the third side
-        third_square_a3 = (
-            (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
-            *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
-        )
+        third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
+        divisor_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
         # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        one_less_cos_a3 = third_square_a3 - divisor_a3_minus_inner_arm_3*divisor_a3_minus_inner_arm_3
+        divisor_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        one_plus_cos_a3 = divisor_a3_plus_inner_arm_3*divisor_a3_plus_inner_arm_3 - third_square_a3
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             missing = abs(
                 outer_arm_3
                 - root(
-                    0.5*abs(third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3))
-                    + outer_arm_3*outer_arm_3 + 0.5*(divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
-                    + 0.5*(divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
-                    - 0.5*abs(third_square_a3 - (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3))
+                    0.5*(
+                        abs(one_less_cos_a3) + divisor_a3_minus_inner_arm_3*divisor_a3_minus_inner_arm_3
+                        + divisor_a3_plus_inner_arm_3*divisor_a3_plus_inner_arm_3 - abs(one_plus_cos_a3)
+                    )
+                    + outer_arm_3*outer_arm_3 - third_square_a3
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
@@ -856,51 +971,44 @@ class DeltaP3CType3(OffsetKinematics):
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
-        cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
-        # rod 1
-        pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
+        cos_a1 = (along_a1*cos_swing_a1 + z*sin_swing_a1)/effective_a1
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x = x - pivot_1_x
-        # rod 1
-        pivot_1_y = base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
         rod_1_y = y - pivot_1_y
-        sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
+        sin_a1 = (along_a1*sin_swing_a1 - z*cos_swing_a1)/effective_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
-        cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+        cos_a2 = (along_a2*cos_swing_a2 + z*sin_swing_a2)/effective_a2
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x = x - pivot_2_x
-        # rod 2
-        pivot_2_y = base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
-        sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
+        sin_a2 = (along_a2*sin_swing_a2 - z*cos_swing_a2)/effective_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
-        cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+        cos_a3 = (along_a3*cos_swing_a3 + z*sin_swing_a3)/effective_a3
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x = x - pivot_3_x
-        # rod 3
-        pivot_3_y = base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
-        sin_a3 = along_a3*sin_swing_a3/divisor_a3 - z*cos_swing_a3/divisor_a3
+        sin_a3 = (along_a3*sin_swing_a3 - z*cos_swing_a3)/effective_a3
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            assembly_sign
+            -part_of_type2_rods_coplanar
             *(
-                rod_1_x*rod_2_y*rod_3_z + rod_1_y*rod_2_z*rod_3_x + rod_1_z*rod_2_x*rod_3_y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_y*rod_2_x*rod_3_z - rod_1_z*rod_2_y*rod_3_x
+                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -975,38 +1083,48 @@ class DeltaP3CType3(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         assembly_sign = k.assembly_sign
-        base_radius_1 = k.base_radius_1
-        base_radius_2 = k.base_radius_2
-        base_radius_3 = k.base_radius_3
         cos_azimuth_1 = k.cos_azimuth_1
+        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
         cos_azimuth_2 = k.cos_azimuth_2
+        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
         cos_azimuth_3 = k.cos_azimuth_3
+        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
         inner_arm_1 = k.inner_arm_1
+        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
         inner_arm_2 = k.inner_arm_2
+        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
         inner_arm_3 = k.inner_arm_3
+        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         outer_arm_1 = k.outer_arm_1
+        outer_arm_1_squared = k.outer_arm_1_squared
+        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
         outer_arm_2 = k.outer_arm_2
         outer_arm_3 = k.outer_arm_3
+        part_of_margin_rods_coplanar = k.part_of_margin_rods_coplanar
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_1_x = k.part_of_pivot_1_x
+        part_of_pivot_1_y = k.part_of_pivot_1_y
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_3_x = k.part_of_pivot_3_x
+        part_of_pivot_3_y = k.part_of_pivot_3_y
+        part_of_share_2 = k.part_of_share_2
+        part_of_share_3 = k.part_of_share_3
         sin_azimuth_1 = k.sin_azimuth_1
         sin_azimuth_2 = k.sin_azimuth_2
         sin_azimuth_3 = k.sin_azimuth_3
-        tcp_radius_1 = k.tcp_radius_1
-        tcp_radius_2 = k.tcp_radius_2
-        tcp_radius_3 = k.tcp_radius_3
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        # rod 1
-        pivot_1_y = base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod 2
-        pivot_2_y = base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         apart_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
@@ -1015,72 +1133,58 @@ class DeltaP3CType3(OffsetKinematics):
         apart_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        # rod 3
-        pivot_3_y = base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         apart_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        # rod 1
-        pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
-        # rod 2
-        pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        # rod 3
-        pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = (
-            0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y + 0.5*apart_2_z*apart_2_z + 0.5*outer_arm_1*outer_arm_1
-            - 0.5*outer_arm_2*outer_arm_2
-        )
+        share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
         # how far centre 3 draws the foot
-        share_3 = (
-            0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y + 0.5*apart_3_z*apart_3_z + 0.5*outer_arm_1*outer_arm_1
-            - 0.5*outer_arm_3*outer_arm_3
-        )
+        share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = outer_arm_1*outer_arm_1 - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*outer_arm_1*outer_arm_1):
+        if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         z = foot_z + pivot_1_z + normal_z*rise
         x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
+        span_1_x = x - part_of_pivot_1_x  # rod 1
         y = foot_y + pivot_1_y + normal_y*rise
-        span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
-        margin_stretched_1 = (-z*cos_a1 - span_1_x*cos_azimuth_1*sin_a1 - span_1_y*sin_a1*sin_azimuth_1)/outer_arm_1
-        span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
-        span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
-        margin_stretched_2 = (-z*cos_a2 - span_2_x*cos_azimuth_2*sin_a2 - span_2_y*sin_a2*sin_azimuth_2)/outer_arm_2
-        span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
-        span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
-        margin_stretched_3 = (-z*cos_a3 - span_3_x*cos_azimuth_3*sin_a3 - span_3_y*sin_a3*sin_azimuth_3)/outer_arm_3
+        span_1_y = y - part_of_pivot_1_y  # rod 1
+        margin_stretched_1 = ((-span_1_x*cos_azimuth_1 - span_1_y*sin_azimuth_1)*sin_a1 - z*cos_a1)/outer_arm_1
+        span_2_x = x - part_of_pivot_2_x  # rod 2
+        span_2_y = y - part_of_pivot_2_y  # rod 2
+        margin_stretched_2 = ((-span_2_x*cos_azimuth_2 - span_2_y*sin_azimuth_2)*sin_a2 - z*cos_a2)/outer_arm_2
+        span_3_x = x - part_of_pivot_3_x  # rod 3
+        span_3_y = y - part_of_pivot_3_y  # rod 3
+        margin_stretched_3 = ((-span_3_x*cos_azimuth_3 - span_3_y*sin_azimuth_3)*sin_a3 - z*cos_a3)/outer_arm_3
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         rod_1_z = z - pivot_1_z
@@ -1092,10 +1196,10 @@ class DeltaP3CType3(OffsetKinematics):
         rod_3_z = z - pivot_3_z
         margin_rods_coplanar = (
             (
-                rod_1_x*rod_2_y*rod_3_z + rod_1_y*rod_2_z*rod_3_x + rod_1_z*rod_2_x*rod_3_y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_y*rod_2_x*rod_3_z - rod_1_z*rod_2_y*rod_3_x
+                rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x) - (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x
+                - rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
+            /part_of_margin_rods_coplanar
         )
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, margin_rods_coplanar)
 
@@ -1108,35 +1212,68 @@ class DeltaP3CType3(OffsetKinematics):
         base_radius_2 = k.base_radius_2
         base_radius_3 = k.base_radius_3
         cos_azimuth_1 = k.cos_azimuth_1
+        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
+        cos_azimuth_1_times_inner_arm_1_times_2 = k.cos_azimuth_1_times_inner_arm_1_times_2
+        cos_azimuth_1_times_tcp_radius_1 = k.cos_azimuth_1_times_tcp_radius_1
         cos_azimuth_2 = k.cos_azimuth_2
+        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
+        cos_azimuth_2_times_inner_arm_2_times_2 = k.cos_azimuth_2_times_inner_arm_2_times_2
+        cos_azimuth_2_times_tcp_radius_2 = k.cos_azimuth_2_times_tcp_radius_2
         cos_azimuth_3 = k.cos_azimuth_3
+        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
+        cos_azimuth_3_times_inner_arm_3_times_2 = k.cos_azimuth_3_times_inner_arm_3_times_2
+        cos_azimuth_3_times_tcp_radius_3 = k.cos_azimuth_3_times_tcp_radius_3
         inner_arm_1 = k.inner_arm_1
+        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
+        inner_arm_1_times_sin_azimuth_1_times_2 = k.inner_arm_1_times_sin_azimuth_1_times_2
         inner_arm_2 = k.inner_arm_2
+        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
+        inner_arm_2_times_sin_azimuth_2_times_2 = k.inner_arm_2_times_sin_azimuth_2_times_2
         inner_arm_3 = k.inner_arm_3
-        machine_scale = k.machine_scale
+        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
+        inner_arm_3_times_sin_azimuth_3_times_2 = k.inner_arm_3_times_sin_azimuth_3_times_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        outer_arm_1 = k.outer_arm_1
-        outer_arm_2 = k.outer_arm_2
-        outer_arm_3 = k.outer_arm_3
+        outer_arm_1_squared = k.outer_arm_1_squared
+        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
+        part_of_determinant_divisor = k.part_of_determinant_divisor
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_1_x = k.part_of_pivot_1_x
+        part_of_pivot_1_y = k.part_of_pivot_1_y
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_3_x = k.part_of_pivot_3_x
+        part_of_pivot_3_y = k.part_of_pivot_3_y
+        part_of_share_2 = k.part_of_share_2
+        part_of_share_3 = k.part_of_share_3
         sin_azimuth_1 = k.sin_azimuth_1
+        sin_azimuth_1_times_tcp_radius_1 = k.sin_azimuth_1_times_tcp_radius_1
         sin_azimuth_2 = k.sin_azimuth_2
+        sin_azimuth_2_times_tcp_radius_2 = k.sin_azimuth_2_times_tcp_radius_2
         sin_azimuth_3 = k.sin_azimuth_3
+        sin_azimuth_3_times_tcp_radius_3 = k.sin_azimuth_3_times_tcp_radius_3
         tcp_radius_1 = k.tcp_radius_1
         tcp_radius_2 = k.tcp_radius_2
         tcp_radius_3 = k.tcp_radius_3
+        twice_cos_azimuth_1 = k.twice_cos_azimuth_1
+        twice_cos_azimuth_2 = k.twice_cos_azimuth_2
+        twice_cos_azimuth_3 = k.twice_cos_azimuth_3
+        twice_inner_arm_1 = k.twice_inner_arm_1
+        twice_inner_arm_2 = k.twice_inner_arm_2
+        twice_inner_arm_3 = k.twice_inner_arm_3
+        twice_sin_azimuth_1 = k.twice_sin_azimuth_1
+        twice_sin_azimuth_2 = k.twice_sin_azimuth_2
+        twice_sin_azimuth_3 = k.twice_sin_azimuth_3
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        # rod 1
-        pivot_1_y = base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod 2
-        pivot_2_y = base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         apart_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
@@ -1145,128 +1282,115 @@ class DeltaP3CType3(OffsetKinematics):
         apart_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        # rod 3
-        pivot_3_y = base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         apart_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        # rod 1
-        pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
-        # rod 2
-        pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        # rod 3
-        pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = (
-            0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y + 0.5*apart_2_z*apart_2_z + 0.5*outer_arm_1*outer_arm_1
-            - 0.5*outer_arm_2*outer_arm_2
-        )
+        share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
         # how far centre 3 draws the foot
-        share_3 = (
-            0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y + 0.5*apart_3_z*apart_3_z + 0.5*outer_arm_1*outer_arm_1
-            - 0.5*outer_arm_3*outer_arm_3
-        )
+        share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = outer_arm_1*outer_arm_1 - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*outer_arm_1*outer_arm_1):
+        if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
-        slope_1_by_x = 2.0*x + 2.0*tcp_radius_1*cos_azimuth_1 - 2.0*(base_radius_1 + inner_arm_1*cos_a1)*cos_azimuth_1
+        part_of_slope_1_by_y = base_radius_1 + inner_arm_1*cos_a1
+        slope_1_by_x = 2.0*(cos_azimuth_1_times_tcp_radius_1 + x) - part_of_slope_1_by_y*twice_cos_azimuth_1
         y = foot_y + pivot_1_y + normal_y*rise
-        slope_1_by_y = 2.0*y + 2.0*tcp_radius_1*sin_azimuth_1 - 2.0*(base_radius_1 + inner_arm_1*cos_a1)*sin_azimuth_1
+        slope_1_by_y = 2.0*(sin_azimuth_1_times_tcp_radius_1 + y) - part_of_slope_1_by_y*twice_sin_azimuth_1
         z = foot_z + pivot_1_z + normal_z*rise
-        slope_1_by_z = 2.0*z + 2.0*inner_arm_1*sin_a1
-        slope_2_by_x = 2.0*x + 2.0*tcp_radius_2*cos_azimuth_2 - 2.0*(base_radius_2 + inner_arm_2*cos_a2)*cos_azimuth_2
-        slope_2_by_y = 2.0*y + 2.0*tcp_radius_2*sin_azimuth_2 - 2.0*(base_radius_2 + inner_arm_2*cos_a2)*sin_azimuth_2
-        slope_2_by_z = 2.0*z + 2.0*inner_arm_2*sin_a2
-        slope_3_by_x = 2.0*x + 2.0*tcp_radius_3*cos_azimuth_3 - 2.0*(base_radius_3 + inner_arm_3*cos_a3)*cos_azimuth_3
-        slope_3_by_y = 2.0*y + 2.0*tcp_radius_3*sin_azimuth_3 - 2.0*(base_radius_3 + inner_arm_3*cos_a3)*sin_azimuth_3
-        slope_3_by_z = 2.0*z + 2.0*inner_arm_3*sin_a3
+        twice_z = -2.0*z
+        slope_1_by_z = twice_inner_arm_1*sin_a1 - twice_z
+        part_of_slope_2_by_x = base_radius_2 + inner_arm_2*cos_a2
+        slope_2_by_y = 2.0*(sin_azimuth_2_times_tcp_radius_2 + y) - part_of_slope_2_by_x*twice_sin_azimuth_2
+        slope_2_by_z = twice_inner_arm_2*sin_a2 - twice_z
+        part_of_slope_3_by_y = base_radius_3 + inner_arm_3*cos_a3
+        slope_3_by_y = 2.0*(sin_azimuth_3_times_tcp_radius_3 + y) - part_of_slope_3_by_y*twice_sin_azimuth_3
+        slope_3_by_z = twice_inner_arm_3*sin_a3 - twice_z
+        part_of_determinant = slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z
+        slope_2_by_x = 2.0*(cos_azimuth_2_times_tcp_radius_2 + x) - part_of_slope_2_by_x*twice_cos_azimuth_2
+        slope_3_by_x = 2.0*(cos_azimuth_3_times_tcp_radius_3 + x) - part_of_slope_3_by_y*twice_cos_azimuth_3
+        part_of_determinant_2 = slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x
+        part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
-            slope_1_by_x*slope_2_by_y*slope_3_by_z + slope_1_by_y*slope_2_by_z*slope_3_by_x
-            + slope_1_by_z*slope_2_by_x*slope_3_by_y - slope_1_by_x*slope_2_by_z*slope_3_by_y
-            - slope_1_by_y*slope_2_by_x*slope_3_by_z - slope_1_by_z*slope_2_by_y*slope_3_by_x
+            part_of_determinant_3*slope_1_by_z - part_of_determinant*slope_1_by_x - part_of_determinant_2*slope_1_by_y
         )
         # nothing controls the plate
-        if not (abs(determinant) > 1e-11*machine_scale*machine_scale*machine_scale):
+        if not (abs(determinant) > part_of_determinant_divisor):
             return Status.IMPOSSIBLE
+        tcp_radius_1_minus_part_of_slope_1_by_y = tcp_radius_1 - part_of_slope_1_by_y
         slope_1_by_a1 = (
-            2.0*inner_arm_1*(z + inner_arm_1*sin_a1)*cos_a1
-            + 2.0*inner_arm_1*cos_azimuth_1*(
-                x + tcp_radius_1*cos_azimuth_1 - (base_radius_1 + inner_arm_1*cos_a1)*cos_azimuth_1
+            (
+                (x + tcp_radius_1_minus_part_of_slope_1_by_y*cos_azimuth_1)*cos_azimuth_1_times_inner_arm_1_times_2
+                + inner_arm_1_times_sin_azimuth_1_times_2*(y + tcp_radius_1_minus_part_of_slope_1_by_y*sin_azimuth_1)
             )*sin_a1
-            + 2.0*inner_arm_1*sin_a1*sin_azimuth_1*(
-                y + tcp_radius_1*sin_azimuth_1 - (base_radius_1 + inner_arm_1*cos_a1)*sin_azimuth_1
-            )
+            + (z - pivot_1_z)*twice_inner_arm_1*cos_a1
         )
-        determinant_divisor = (
-            determinant
-            if abs(determinant) > 1e-11*machine_scale*machine_scale*machine_scale
-            else 1.0
-        )
+        one_by_determinant_divisor = 1.0/determinant
+        part = one_by_determinant_divisor*slope_1_by_a1
+        tcp_radius_2_minus_part_of_slope_2_by_x = tcp_radius_2 - part_of_slope_2_by_x
         slope_2_by_a2 = (
-            2.0*inner_arm_2*(z + inner_arm_2*sin_a2)*cos_a2
-            + 2.0*inner_arm_2*cos_azimuth_2*(
-                x + tcp_radius_2*cos_azimuth_2 - (base_radius_2 + inner_arm_2*cos_a2)*cos_azimuth_2
+            (
+                (x + tcp_radius_2_minus_part_of_slope_2_by_x*cos_azimuth_2)*cos_azimuth_2_times_inner_arm_2_times_2
+                + inner_arm_2_times_sin_azimuth_2_times_2*(y + tcp_radius_2_minus_part_of_slope_2_by_x*sin_azimuth_2)
             )*sin_a2
-            + 2.0*inner_arm_2*sin_a2*sin_azimuth_2*(
-                y + tcp_radius_2*sin_azimuth_2 - (base_radius_2 + inner_arm_2*cos_a2)*sin_azimuth_2
-            )
+            + (z - pivot_2_z)*twice_inner_arm_2*cos_a2
         )
+        part_2 = one_by_determinant_divisor*slope_2_by_a2
+        tcp_radius_3_minus_part_of_slope_3_by_y = tcp_radius_3 - part_of_slope_3_by_y
         slope_3_by_a3 = (
-            2.0*inner_arm_3*(z + inner_arm_3*sin_a3)*cos_a3
-            + 2.0*inner_arm_3*cos_azimuth_3*(
-                x + tcp_radius_3*cos_azimuth_3 - (base_radius_3 + inner_arm_3*cos_a3)*cos_azimuth_3
+            (
+                (x + tcp_radius_3_minus_part_of_slope_3_by_y*cos_azimuth_3)*cos_azimuth_3_times_inner_arm_3_times_2
+                + inner_arm_3_times_sin_azimuth_3_times_2*(y + tcp_radius_3_minus_part_of_slope_3_by_y*sin_azimuth_3)
             )*sin_a3
-            + 2.0*inner_arm_3*sin_a3*sin_azimuth_3*(
-                y + tcp_radius_3*sin_azimuth_3 - (base_radius_3 + inner_arm_3*cos_a3)*sin_azimuth_3
-            )
+            + (z - pivot_3_z)*twice_inner_arm_3*cos_a3
         )
+        part_3 = one_by_determinant_divisor*slope_3_by_a3
         return (
             (
-                (slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z)*slope_1_by_a1/determinant_divisor,
-                (slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*slope_3_by_a3/determinant_divisor,
+                part*part_of_determinant,
+                part_2*(slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y),
+                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
             ),
             (
-                slope_1_by_a1*(slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x)/determinant_divisor,
-                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x)*slope_3_by_a3/determinant_divisor,
+                part*part_of_determinant_2,
+                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*part_2,
+                part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
             ),
             (
-                (slope_2_by_y*slope_3_by_x - slope_2_by_x*slope_3_by_y)*slope_1_by_a1/determinant_divisor,
-                (slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*slope_3_by_a3/determinant_divisor,
+                -part*part_of_determinant_3,
+                part_2*(slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x),
+                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
             ),
         )
 
@@ -1284,16 +1408,21 @@ class DeltaP3CType3(OffsetKinematics):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        assembly_sign = k.assembly_sign
-        base_radius_1 = k.base_radius_1
-        base_radius_2 = k.base_radius_2
-        base_radius_3 = k.base_radius_3
         cos_azimuth_1 = k.cos_azimuth_1
+        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
         cos_azimuth_2 = k.cos_azimuth_2
+        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
         cos_azimuth_3 = k.cos_azimuth_3
+        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
         inner_arm_1 = k.inner_arm_1
+        inner_arm_1_times_shortest_link = k.inner_arm_1_times_shortest_link
+        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
         inner_arm_2 = k.inner_arm_2
+        inner_arm_2_times_shortest_link = k.inner_arm_2_times_shortest_link
+        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
         inner_arm_3 = k.inner_arm_3
+        inner_arm_3_times_shortest_link = k.inner_arm_3_times_shortest_link
+        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -1302,17 +1431,25 @@ class DeltaP3CType3(OffsetKinematics):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         outer_arm_1 = k.outer_arm_1
+        outer_arm_1_squared = k.outer_arm_1_squared
         outer_arm_2 = k.outer_arm_2
         outer_arm_3 = k.outer_arm_3
+        part_of_pivot_1_x = k.part_of_pivot_1_x
+        part_of_pivot_1_y = k.part_of_pivot_1_y
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_3_x = k.part_of_pivot_3_x
+        part_of_pivot_3_y = k.part_of_pivot_3_y
+        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         sin_azimuth_1 = k.sin_azimuth_1
         sin_azimuth_2 = k.sin_azimuth_2
         sin_azimuth_3 = k.sin_azimuth_3
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        tcp_radius_1 = k.tcp_radius_1
-        tcp_radius_2 = k.tcp_radius_2
-        tcp_radius_3 = k.tcp_radius_3
+        twice_inner_arm_1 = k.twice_inner_arm_1
+        twice_inner_arm_2 = k.twice_inner_arm_2
+        twice_inner_arm_3 = k.twice_inner_arm_3
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -1320,99 +1457,101 @@ class DeltaP3CType3(OffsetKinematics):
             and -1e9 <= ref_a3 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        flange_z = z - point_z  # the flange behind the point
         flange_x = x - point_x  # the flange behind the point
-        span_1_x = flange_x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
+        span_1_x = flange_x - part_of_pivot_1_x  # rod 1
         flange_y = y - point_y  # the flange behind the point
-        span_1_y = flange_y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
+        span_1_y = flange_y - part_of_pivot_1_y  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
-        effective_a1 = sqrt(along_a1*along_a1 + flange_z*flange_z)  # effective length that the angle turns
+        flange_z = z - point_z  # the flange behind the point
+        flange_z_squared = flange_z*flange_z
+        effective_a1 = root(flange_z_squared + along_a1*along_a1)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*inner_arm_1):
+        if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = effective_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
+        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
         # square of the third side
-        third_square_a1 = (
-            (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
-            *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
-        )
+        third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
+        divisor_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
         # 1 - cosine, times the scale
-        one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        one_less_cos_a1 = third_square_a1 - divisor_a1_minus_inner_arm_1*divisor_a1_minus_inner_arm_1
+        divisor_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        one_plus_cos_a1 = divisor_a1_plus_inner_arm_1*divisor_a1_plus_inner_arm_1 - third_square_a1
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             missing = abs(
                 outer_arm_1
                 - root(
-                    0.5*abs(third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1))
-                    + outer_arm_1*outer_arm_1 + 0.5*(divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
-                    + 0.5*(divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
-                    - 0.5*abs(third_square_a1 - (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1))
+                    outer_arm_1_squared
+                    + 0.5*(
+                        abs(one_less_cos_a1) + divisor_a1_minus_inner_arm_1*divisor_a1_minus_inner_arm_1
+                        + divisor_a1_plus_inner_arm_1*divisor_a1_plus_inner_arm_1 - abs(one_plus_cos_a1)
+                    )
+                    - third_square_a1
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = flange_x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
-        span_2_y = flange_y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
+        span_2_y = flange_y - part_of_pivot_2_y  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = sqrt(along_a2*along_a2 + flange_z*flange_z)  # effective length that the angle turns
+        effective_a2 = root(flange_z_squared + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*inner_arm_2):
+        if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = effective_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
+        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
         # square of the third side
-        third_square_a2 = (
-            (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
-            *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
-        )
+        third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
+        divisor_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
         # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        one_less_cos_a2 = third_square_a2 - divisor_a2_minus_inner_arm_2*divisor_a2_minus_inner_arm_2
+        divisor_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        one_plus_cos_a2 = divisor_a2_plus_inner_arm_2*divisor_a2_plus_inner_arm_2 - third_square_a2
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             missing = abs(
                 outer_arm_2
                 - root(
-                    0.5*abs(third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2))
-                    + outer_arm_2*outer_arm_2 + 0.5*(divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
-                    + 0.5*(divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
-                    - 0.5*abs(third_square_a2 - (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2))
+                    0.5*(
+                        abs(one_less_cos_a2) + divisor_a2_minus_inner_arm_2*divisor_a2_minus_inner_arm_2
+                        + divisor_a2_plus_inner_arm_2*divisor_a2_plus_inner_arm_2 - abs(one_plus_cos_a2)
+                    )
+                    + outer_arm_2*outer_arm_2 - third_square_a2
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_x = flange_x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
-        span_3_y = flange_y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
+        span_3_x = flange_x - part_of_pivot_3_x  # rod 3
+        span_3_y = flange_y - part_of_pivot_3_y  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = sqrt(along_a3*along_a3 + flange_z*flange_z)  # effective length that the angle turns
+        effective_a3 = root(flange_z_squared + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > 1e-9*inner_arm_3):
+        if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
-        swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
+        swing_scale_a3 = effective_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
+        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
         # square of the third side
-        third_square_a3 = (
-            (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
-            *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
-        )
+        third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
+        divisor_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
         # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        one_less_cos_a3 = third_square_a3 - divisor_a3_minus_inner_arm_3*divisor_a3_minus_inner_arm_3
+        divisor_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        one_plus_cos_a3 = divisor_a3_plus_inner_arm_3*divisor_a3_plus_inner_arm_3 - third_square_a3
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             missing = abs(
                 outer_arm_3
                 - root(
-                    0.5*abs(third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3))
-                    + outer_arm_3*outer_arm_3 + 0.5*(divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
-                    + 0.5*(divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
-                    - 0.5*abs(third_square_a3 - (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3))
+                    0.5*(
+                        abs(one_less_cos_a3) + divisor_a3_minus_inner_arm_3*divisor_a3_minus_inner_arm_3
+                        + divisor_a3_plus_inner_arm_3*divisor_a3_plus_inner_arm_3 - abs(one_plus_cos_a3)
+                    )
+                    + outer_arm_3*outer_arm_3 - third_square_a3
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
@@ -1420,51 +1559,44 @@ class DeltaP3CType3(OffsetKinematics):
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
-        cos_a1 = along_a1*cos_swing_a1/divisor_a1 + flange_z*sin_swing_a1/divisor_a1
-        # rod 1
-        pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
+        cos_a1 = (along_a1*cos_swing_a1 + flange_z*sin_swing_a1)/effective_a1
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x = flange_x - pivot_1_x
-        # rod 1
-        pivot_1_y = base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
         rod_1_y = flange_y - pivot_1_y
-        sin_a1 = along_a1*sin_swing_a1/divisor_a1 - flange_z*cos_swing_a1/divisor_a1
+        sin_a1 = (along_a1*sin_swing_a1 - flange_z*cos_swing_a1)/effective_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = flange_z - pivot_1_z
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
-        cos_a2 = along_a2*cos_swing_a2/divisor_a2 + flange_z*sin_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+        cos_a2 = (along_a2*cos_swing_a2 + flange_z*sin_swing_a2)/effective_a2
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x = flange_x - pivot_2_x
-        # rod 2
-        pivot_2_y = base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         rod_2_y = flange_y - pivot_2_y
-        sin_a2 = along_a2*sin_swing_a2/divisor_a2 - flange_z*cos_swing_a2/divisor_a2
+        sin_a2 = (along_a2*sin_swing_a2 - flange_z*cos_swing_a2)/effective_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = flange_z - pivot_2_z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
-        cos_a3 = along_a3*cos_swing_a3/divisor_a3 + flange_z*sin_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+        cos_a3 = (along_a3*cos_swing_a3 + flange_z*sin_swing_a3)/effective_a3
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x = flange_x - pivot_3_x
-        # rod 3
-        pivot_3_y = base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         rod_3_y = flange_y - pivot_3_y
-        sin_a3 = along_a3*sin_swing_a3/divisor_a3 - flange_z*cos_swing_a3/divisor_a3
+        sin_a3 = (along_a3*sin_swing_a3 - flange_z*cos_swing_a3)/effective_a3
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         rod_3_z = flange_z - pivot_3_z
         type2_rods_coplanar = (
-            assembly_sign
+            -part_of_type2_rods_coplanar
             *(
-                rod_1_x*rod_2_y*rod_3_z + rod_1_y*rod_2_z*rod_3_x + rod_1_z*rod_2_x*rod_3_y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_y*rod_2_x*rod_3_z - rod_1_z*rod_2_y*rod_3_x
+                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -1494,38 +1626,47 @@ class DeltaP3CType3(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         assembly_sign = k.assembly_sign
-        base_radius_1 = k.base_radius_1
-        base_radius_2 = k.base_radius_2
-        base_radius_3 = k.base_radius_3
         cos_azimuth_1 = k.cos_azimuth_1
+        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
         cos_azimuth_2 = k.cos_azimuth_2
+        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
         cos_azimuth_3 = k.cos_azimuth_3
+        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
         inner_arm_1 = k.inner_arm_1
+        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
         inner_arm_2 = k.inner_arm_2
+        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
         inner_arm_3 = k.inner_arm_3
+        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         outer_arm_1 = k.outer_arm_1
+        outer_arm_1_squared = k.outer_arm_1_squared
+        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
         outer_arm_2 = k.outer_arm_2
         outer_arm_3 = k.outer_arm_3
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_1_x = k.part_of_pivot_1_x
+        part_of_pivot_1_y = k.part_of_pivot_1_y
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_3_x = k.part_of_pivot_3_x
+        part_of_pivot_3_y = k.part_of_pivot_3_y
+        part_of_share_2 = k.part_of_share_2
+        part_of_share_3 = k.part_of_share_3
         sin_azimuth_1 = k.sin_azimuth_1
         sin_azimuth_2 = k.sin_azimuth_2
         sin_azimuth_3 = k.sin_azimuth_3
-        tcp_radius_1 = k.tcp_radius_1
-        tcp_radius_2 = k.tcp_radius_2
-        tcp_radius_3 = k.tcp_radius_3
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        # rod 1
-        pivot_1_y = base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod 2
-        pivot_2_y = base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         apart_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
@@ -1534,72 +1675,58 @@ class DeltaP3CType3(OffsetKinematics):
         apart_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        # rod 3
-        pivot_3_y = base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         apart_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        # rod 1
-        pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
-        # rod 2
-        pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        # rod 3
-        pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = (
-            0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y + 0.5*apart_2_z*apart_2_z + 0.5*outer_arm_1*outer_arm_1
-            - 0.5*outer_arm_2*outer_arm_2
-        )
+        share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
         # how far centre 3 draws the foot
-        share_3 = (
-            0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y + 0.5*apart_3_z*apart_3_z + 0.5*outer_arm_1*outer_arm_1
-            - 0.5*outer_arm_3*outer_arm_3
-        )
+        share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = outer_arm_1*outer_arm_1 - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*outer_arm_1*outer_arm_1):
+        if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         flange_z = foot_z + pivot_1_z + normal_z*rise
         flange_x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = flange_x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
+        span_1_x = flange_x - part_of_pivot_1_x  # rod 1
         flange_y = foot_y + pivot_1_y + normal_y*rise
-        span_1_y = flange_y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
-        branch_knee_1 = (-flange_z*cos_a1 - span_1_x*cos_azimuth_1*sin_a1 - span_1_y*sin_a1*sin_azimuth_1)/outer_arm_1
-        span_2_x = flange_x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
-        span_2_y = flange_y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
-        branch_knee_2 = (-flange_z*cos_a2 - span_2_x*cos_azimuth_2*sin_a2 - span_2_y*sin_a2*sin_azimuth_2)/outer_arm_2
-        span_3_x = flange_x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
-        span_3_y = flange_y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
-        branch_knee_3 = (-flange_z*cos_a3 - span_3_x*cos_azimuth_3*sin_a3 - span_3_y*sin_a3*sin_azimuth_3)/outer_arm_3
+        span_1_y = flange_y - part_of_pivot_1_y  # rod 1
+        branch_knee_1 = ((-span_1_x*cos_azimuth_1 - span_1_y*sin_azimuth_1)*sin_a1 - flange_z*cos_a1)/outer_arm_1
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
+        span_2_y = flange_y - part_of_pivot_2_y  # rod 2
+        branch_knee_2 = ((-span_2_x*cos_azimuth_2 - span_2_y*sin_azimuth_2)*sin_a2 - flange_z*cos_a2)/outer_arm_2
+        span_3_x = flange_x - part_of_pivot_3_x  # rod 3
+        span_3_y = flange_y - part_of_pivot_3_y  # rod 3
+        branch_knee_3 = ((-span_3_x*cos_azimuth_3 - span_3_y*sin_azimuth_3)*sin_a3 - flange_z*cos_a3)/outer_arm_3
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

@@ -19,8 +19,8 @@ Singularities:
     rods_dependent: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 4280 additions, 4922 multiplications, 1400 divisions, 140 square roots, 120 sines
-    inverse: 292 additions, 378 multiplications, 60 divisions, 10 square roots, 2 sines
+    forward: 4280 additions, 5562 multiplications, 600 divisions, 140 square roots, 120 sines
+    inverse: 256 additions, 348 multiplications, 30 divisions, 10 square roots, 2 sines
     Newton's method: every pass improves the pose until the rods fit: at most 20 passes, all of which are counted
 
 Six lengths allow up to 40 poses. Forward kinematics finds the one in the assembly mode of the home pose, by
@@ -206,6 +206,9 @@ class Constants(NamedTuple):
     within: float
     least_cos_base: float
     least_cos_plate: float
+    machine_scale_times_shortest_link: float
+    machine_scale_squared: float
+    one_by_platform_radius: float
 
 
 class Hexapod(IterativeForward):
@@ -1127,6 +1130,9 @@ class Hexapod(IterativeForward):
             if cos(DEGREE*max_angle_platform_joint) > -0.999999999999
             else -2.0
         )
+        machine_scale_times_shortest_link = 1e-9*machine_scale
+        machine_scale_squared = machine_scale*machine_scale
+        one_by_platform_radius = 1.0/platform_radius
         return Constants(
             base_1_x=base_1_x, base_1_y=base_1_y, base_1_z=base_1_z, base_2_x=base_2_x, base_2_y=base_2_y,
             base_2_z=base_2_z, base_3_x=base_3_x, base_3_y=base_3_y, base_3_z=base_3_z, base_4_x=base_4_x,
@@ -1166,6 +1172,8 @@ class Hexapod(IterativeForward):
             home_along_6_y=along_6_y, home_along_6_z=along_6_z, plate_axis_6_x=plate_axis_6_x,
             plate_axis_6_y=plate_axis_6_y, plate_axis_6_z=plate_axis_6_z, within=within,
             least_cos_base=least_cos_base, least_cos_plate=least_cos_plate,
+            machine_scale_times_shortest_link=machine_scale_times_shortest_link,
+            machine_scale_squared=machine_scale_squared, one_by_platform_radius=one_by_platform_radius,
         )
 
     def _find_platform(self, given: Values) -> Values | Status:
@@ -1194,13 +1202,15 @@ class Hexapod(IterativeForward):
         base_6_x = k.base_6_x
         base_6_y = k.base_6_y
         base_6_z = k.base_6_z
-        machine_scale = k.machine_scale
+        machine_scale_squared = k.machine_scale_squared
+        machine_scale_times_shortest_link = k.machine_scale_times_shortest_link
         offset_l1 = k.offset_l1
         offset_l2 = k.offset_l2
         offset_l3 = k.offset_l3
         offset_l4 = k.offset_l4
         offset_l5 = k.offset_l5
         offset_l6 = k.offset_l6
+        one_by_platform_radius = k.one_by_platform_radius
         platform_1_x = k.platform_1_x
         platform_1_y = k.platform_1_y
         platform_1_z = k.platform_1_z
@@ -1219,7 +1229,6 @@ class Hexapod(IterativeForward):
         platform_6_x = k.platform_6_x
         platform_6_y = k.platform_6_y
         platform_6_z = k.platform_6_z
-        platform_radius = k.platform_radius
         within = k.within
         # numbers of reasonable size
         if not (
@@ -1265,19 +1274,22 @@ class Hexapod(IterativeForward):
             sin_roll = sin(roll)
             sin_pitch = sin(pitch)
             sin_yaw = sin(yaw)
-            turned_12 = cos_yaw*sin_pitch*sin_roll - cos_roll*sin_yaw
-            turned_13 = sin_roll*sin_yaw + cos_roll*cos_yaw*sin_pitch
+            cos_roll_times_sin_yaw = cos_roll*sin_yaw
+            cos_yaw_times_sin_roll = cos_yaw*sin_roll
+            turned_12 = cos_yaw_times_sin_roll*sin_pitch - cos_roll_times_sin_yaw
+            sin_roll_times_sin_yaw = sin_roll*sin_yaw
+            cos_roll_times_cos_yaw = cos_roll*cos_yaw
+            turned_13 = sin_roll_times_sin_yaw + cos_roll_times_cos_yaw*sin_pitch
             arm_1_x = start_arm_1_x*turned_11 + start_arm_1_y*turned_12 + start_arm_1_z*turned_13
             span_1_x = arm_1_x + x - base_1_x  # leg 1: from its joint on the base to its joint on the platform
             turned_21 = cos_pitch*sin_yaw
-            turned_22 = cos_roll*cos_yaw + sin_pitch*sin_roll*sin_yaw
-            turned_23 = cos_roll*sin_pitch*sin_yaw - cos_yaw*sin_roll
+            turned_22 = cos_roll_times_cos_yaw + sin_pitch*sin_roll_times_sin_yaw
+            turned_23 = cos_roll_times_sin_yaw*sin_pitch - cos_yaw_times_sin_roll
             arm_1_y = start_arm_1_x*turned_21 + start_arm_1_y*turned_22 + start_arm_1_z*turned_23
             span_1_y = arm_1_y + y - base_1_y
-            turned_31 = -sin_pitch
             turned_32 = cos_pitch*sin_roll
             turned_33 = cos_pitch*cos_roll
-            arm_1_z = start_arm_1_x*turned_31 + start_arm_1_y*turned_32 + start_arm_1_z*turned_33
+            arm_1_z = start_arm_1_y*turned_32 + start_arm_1_z*turned_33 - start_arm_1_x*sin_pitch
             span_1_z = arm_1_z + z - base_1_z
             length_1 = sqrt(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
             error_1 = length_1 - l1  # by what leg 1 would be too long
@@ -1285,7 +1297,7 @@ class Hexapod(IterativeForward):
             span_2_x = arm_2_x + x - base_2_x  # leg 2: from its joint on the base to its joint on the platform
             arm_2_y = start_arm_2_x*turned_21 + start_arm_2_y*turned_22 + start_arm_2_z*turned_23
             span_2_y = arm_2_y + y - base_2_y
-            arm_2_z = start_arm_2_x*turned_31 + start_arm_2_y*turned_32 + start_arm_2_z*turned_33
+            arm_2_z = start_arm_2_y*turned_32 + start_arm_2_z*turned_33 - start_arm_2_x*sin_pitch
             span_2_z = arm_2_z + z - base_2_z
             length_2 = sqrt(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
             error_2 = length_2 - l2  # by what leg 2 would be too long
@@ -1293,7 +1305,7 @@ class Hexapod(IterativeForward):
             span_3_x = arm_3_x + x - base_3_x  # leg 3: from its joint on the base to its joint on the platform
             arm_3_y = start_arm_3_x*turned_21 + start_arm_3_y*turned_22 + start_arm_3_z*turned_23
             span_3_y = arm_3_y + y - base_3_y
-            arm_3_z = start_arm_3_x*turned_31 + start_arm_3_y*turned_32 + start_arm_3_z*turned_33
+            arm_3_z = start_arm_3_y*turned_32 + start_arm_3_z*turned_33 - start_arm_3_x*sin_pitch
             span_3_z = arm_3_z + z - base_3_z
             length_3 = sqrt(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
             error_3 = length_3 - l3  # by what leg 3 would be too long
@@ -1301,7 +1313,7 @@ class Hexapod(IterativeForward):
             span_4_x = arm_4_x + x - base_4_x  # leg 4: from its joint on the base to its joint on the platform
             arm_4_y = start_arm_4_x*turned_21 + start_arm_4_y*turned_22 + start_arm_4_z*turned_23
             span_4_y = arm_4_y + y - base_4_y
-            arm_4_z = start_arm_4_x*turned_31 + start_arm_4_y*turned_32 + start_arm_4_z*turned_33
+            arm_4_z = start_arm_4_y*turned_32 + start_arm_4_z*turned_33 - start_arm_4_x*sin_pitch
             span_4_z = arm_4_z + z - base_4_z
             length_4 = sqrt(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
             error_4 = length_4 - l4  # by what leg 4 would be too long
@@ -1309,7 +1321,7 @@ class Hexapod(IterativeForward):
             span_5_x = arm_5_x + x - base_5_x  # leg 5: from its joint on the base to its joint on the platform
             arm_5_y = start_arm_5_x*turned_21 + start_arm_5_y*turned_22 + start_arm_5_z*turned_23
             span_5_y = arm_5_y + y - base_5_y
-            arm_5_z = start_arm_5_x*turned_31 + start_arm_5_y*turned_32 + start_arm_5_z*turned_33
+            arm_5_z = start_arm_5_y*turned_32 + start_arm_5_z*turned_33 - start_arm_5_x*sin_pitch
             span_5_z = arm_5_z + z - base_5_z
             length_5 = sqrt(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
             error_5 = length_5 - l5  # by what leg 5 would be too long
@@ -1317,7 +1329,7 @@ class Hexapod(IterativeForward):
             span_6_x = arm_6_x + x - base_6_x  # leg 6: from its joint on the base to its joint on the platform
             arm_6_y = start_arm_6_x*turned_21 + start_arm_6_y*turned_22 + start_arm_6_z*turned_23
             span_6_y = arm_6_y + y - base_6_y
-            arm_6_z = start_arm_6_x*turned_31 + start_arm_6_y*turned_32 + start_arm_6_z*turned_33
+            arm_6_z = start_arm_6_y*turned_32 + start_arm_6_z*turned_33 - start_arm_6_x*sin_pitch
             span_6_z = arm_6_z + z - base_6_z
             length_6 = sqrt(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
             error_6 = length_6 - l6  # by what leg 6 would be too long
@@ -1327,53 +1339,59 @@ class Hexapod(IterativeForward):
                 and (abs(error_4) <= within) and (abs(error_5) <= within) and (abs(error_6) <= within)
             )
             # leg 1: its direction, and the moment of that about the platform's origin
-            divisor_1 = length_1 if length_1 > 1e-9*machine_scale else 1.0
-            along_1_x = span_1_x/divisor_1
-            along_1_y = span_1_y/divisor_1
-            along_1_z = span_1_z/divisor_1
-            moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
-            moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-            moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
+            divisor_1 = length_1 if length_1 > machine_scale_times_shortest_link else 1.0
+            one_by_divisor_1 = 1.0/divisor_1
+            along_1_x = one_by_divisor_1*span_1_x
+            along_1_y = one_by_divisor_1*span_1_y
+            along_1_z = one_by_divisor_1*span_1_z
+            moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*one_by_platform_radius
+            moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*one_by_platform_radius
+            moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*one_by_platform_radius
             # leg 2: its direction, and the moment of that about the platform's origin
-            divisor_2 = length_2 if length_2 > 1e-9*machine_scale else 1.0
-            along_2_x = span_2_x/divisor_2
-            along_2_y = span_2_y/divisor_2
-            along_2_z = span_2_z/divisor_2
-            moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
-            moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-            moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
+            divisor_2 = length_2 if length_2 > machine_scale_times_shortest_link else 1.0
+            one_by_divisor_2 = 1.0/divisor_2
+            along_2_x = one_by_divisor_2*span_2_x
+            along_2_y = one_by_divisor_2*span_2_y
+            along_2_z = one_by_divisor_2*span_2_z
+            moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*one_by_platform_radius
+            moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*one_by_platform_radius
+            moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*one_by_platform_radius
             # leg 3: its direction, and the moment of that about the platform's origin
-            divisor_3 = length_3 if length_3 > 1e-9*machine_scale else 1.0
-            along_3_x = span_3_x/divisor_3
-            along_3_y = span_3_y/divisor_3
-            along_3_z = span_3_z/divisor_3
-            moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
-            moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-            moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
+            divisor_3 = length_3 if length_3 > machine_scale_times_shortest_link else 1.0
+            one_by_divisor_3 = 1.0/divisor_3
+            along_3_x = one_by_divisor_3*span_3_x
+            along_3_y = one_by_divisor_3*span_3_y
+            along_3_z = one_by_divisor_3*span_3_z
+            moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*one_by_platform_radius
+            moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*one_by_platform_radius
+            moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*one_by_platform_radius
             # leg 4: its direction, and the moment of that about the platform's origin
-            divisor_4 = length_4 if length_4 > 1e-9*machine_scale else 1.0
-            along_4_x = span_4_x/divisor_4
-            along_4_y = span_4_y/divisor_4
-            along_4_z = span_4_z/divisor_4
-            moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
-            moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-            moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
+            divisor_4 = length_4 if length_4 > machine_scale_times_shortest_link else 1.0
+            one_by_divisor_4 = 1.0/divisor_4
+            along_4_x = one_by_divisor_4*span_4_x
+            along_4_y = one_by_divisor_4*span_4_y
+            along_4_z = one_by_divisor_4*span_4_z
+            moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*one_by_platform_radius
+            moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*one_by_platform_radius
+            moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*one_by_platform_radius
             # leg 5: its direction, and the moment of that about the platform's origin
-            divisor_5 = length_5 if length_5 > 1e-9*machine_scale else 1.0
-            along_5_x = span_5_x/divisor_5
-            along_5_y = span_5_y/divisor_5
-            along_5_z = span_5_z/divisor_5
-            moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
-            moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-            moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
+            divisor_5 = length_5 if length_5 > machine_scale_times_shortest_link else 1.0
+            one_by_divisor_5 = 1.0/divisor_5
+            along_5_x = one_by_divisor_5*span_5_x
+            along_5_y = one_by_divisor_5*span_5_y
+            along_5_z = one_by_divisor_5*span_5_z
+            moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*one_by_platform_radius
+            moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*one_by_platform_radius
+            moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*one_by_platform_radius
             # leg 6: its direction, and the moment of that about the platform's origin
-            divisor_6 = length_6 if length_6 > 1e-9*machine_scale else 1.0
-            along_6_x = span_6_x/divisor_6
-            along_6_y = span_6_y/divisor_6
-            along_6_z = span_6_z/divisor_6
-            moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
-            moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-            moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
+            divisor_6 = length_6 if length_6 > machine_scale_times_shortest_link else 1.0
+            one_by_divisor_6 = 1.0/divisor_6
+            along_6_x = one_by_divisor_6*span_6_x
+            along_6_y = one_by_divisor_6*span_6_y
+            along_6_z = one_by_divisor_6*span_6_z
+            moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*one_by_platform_radius
+            moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*one_by_platform_radius
+            moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*one_by_platform_radius
             # the twist that lets the errors vanish
             determinant, x_rate, y_rate, z_rate, swing_x, swing_y, swing_z = solve(
                 (
@@ -1386,28 +1404,28 @@ class Hexapod(IterativeForward):
                 ),
                 ((-error_1,), (-error_2,), (-error_3,), (-error_4,), (-error_5,), (-error_6,)),
             )
-            spin_x = swing_x/platform_radius
-            spin_y = swing_y/platform_radius
+            spin_x = one_by_platform_radius*swing_x
+            spin_y = one_by_platform_radius*swing_y
             cos_pitch_divisor = cos_pitch if abs(cos_pitch) > 1e-11 else 1.0
             roll_rate = (spin_x*cos_yaw + spin_y*sin_yaw)/cos_pitch_divisor
             pitch_rate = spin_y*cos_yaw - spin_x*sin_yaw
-            spin_z = swing_z/platform_radius
+            spin_z = one_by_platform_radius*swing_z
             yaw_rate = spin_z + roll_rate*sin_pitch
             # of the step, in machines and radians
             size = root(
                 pitch_rate*pitch_rate + roll_rate*roll_rate + yaw_rate*yaw_rate
-                + x_rate*x_rate/(machine_scale*machine_scale) + y_rate*y_rate/(machine_scale*machine_scale)
-                + z_rate*z_rate/(machine_scale*machine_scale)
+                + (x_rate*x_rate + y_rate*y_rate + z_rate*z_rate)/machine_scale_squared
             )
             stretch = 2.0*size if size > 0.5 else 1.0
+            one_by_stretch = 1.0/stretch
             if (fit) and (fitted):
                 break
-            x = x + x_rate/stretch
-            y = y + y_rate/stretch
-            z = z + z_rate/stretch
-            roll = roll + roll_rate/stretch
-            pitch = pitch + pitch_rate/stretch
-            yaw = yaw + yaw_rate/stretch
+            x = x + one_by_stretch*x_rate
+            y = y + one_by_stretch*y_rate
+            z = z + one_by_stretch*z_rate
+            roll = roll + one_by_stretch*roll_rate
+            pitch = pitch + one_by_stretch*pitch_rate
+            yaw = yaw + one_by_stretch*yaw_rate
             fitted = fit
         else:
             return Status.IMPOSSIBLE
@@ -1420,9 +1438,9 @@ class Hexapod(IterativeForward):
         r21 = start_r11*turned_21 + start_r21*turned_22 + start_r31*turned_23
         r22 = start_r12*turned_21 + start_r22*turned_22 + start_r32*turned_23
         r23 = start_r13*turned_21 + start_r23*turned_22 + start_r33*turned_23
-        r31 = start_r11*turned_31 + start_r21*turned_32 + start_r31*turned_33
-        r32 = start_r12*turned_31 + start_r22*turned_32 + start_r32*turned_33
-        r33 = start_r13*turned_31 + start_r23*turned_32 + start_r33*turned_33
+        r31 = start_r21*turned_32 + start_r31*turned_33 - start_r11*sin_pitch
+        r32 = start_r22*turned_32 + start_r32*turned_33 - start_r12*sin_pitch
+        r33 = start_r23*turned_32 + start_r33*turned_33 - start_r13*sin_pitch
         return (
             x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, determinant, along_1_x, along_1_y, along_1_z,
             moment_1_x, moment_1_y, moment_1_z, along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z,
@@ -1557,7 +1575,7 @@ class Hexapod(IterativeForward):
         home_along_6_z = k.home_along_6_z
         least_cos_base = k.least_cos_base
         least_cos_plate = k.least_cos_plate
-        machine_scale = k.machine_scale
+        machine_scale_times_shortest_link = k.machine_scale_times_shortest_link
         min_type2_margin = k.min_type2_margin
         offset_l1 = k.offset_l1
         offset_l2 = k.offset_l2
@@ -1565,6 +1583,7 @@ class Hexapod(IterativeForward):
         offset_l4 = k.offset_l4
         offset_l5 = k.offset_l5
         offset_l6 = k.offset_l6
+        one_by_platform_radius = k.one_by_platform_radius
         plate_axis_1_x = k.plate_axis_1_x
         plate_axis_1_y = k.plate_axis_1_y
         plate_axis_1_z = k.plate_axis_1_z
@@ -1601,69 +1620,85 @@ class Hexapod(IterativeForward):
         platform_6_x = k.platform_6_x
         platform_6_y = k.platform_6_y
         platform_6_z = k.platform_6_z
-        platform_radius = k.platform_radius
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x  # rod 1
-        span_1_y = y + platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23 - base_1_y  # rod 1
-        span_1_z = z + platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33 - base_1_z  # rod 1
+        arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
+        span_1_x = arm_1_x + x - base_1_x  # rod 1
+        arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
+        span_1_y = arm_1_y + y - base_1_y  # rod 1
+        arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
+        span_1_z = arm_1_z + z - base_1_z  # rod 1
         # l1: quadratic in the rod 1 equation
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
-        if not (l1 > 1e-9*machine_scale):
+        if not (l1 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 1: without length it has no direction", 0.0)
-        span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x  # rod 2
-        span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y  # rod 2
-        span_2_z = z + platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33 - base_2_z  # rod 2
+        arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
+        span_2_x = arm_2_x + x - base_2_x  # rod 2
+        arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
+        span_2_y = arm_2_y + y - base_2_y  # rod 2
+        arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
+        span_2_z = arm_2_z + z - base_2_z  # rod 2
         # l2: quadratic in the rod 2 equation
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
-        if not (l2 > 1e-9*machine_scale):
+        if not (l2 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 2: without length it has no direction", 0.0)
-        span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x  # rod 3
-        span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y  # rod 3
-        span_3_z = z + platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33 - base_3_z  # rod 3
+        arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
+        span_3_x = arm_3_x + x - base_3_x  # rod 3
+        arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
+        span_3_y = arm_3_y + y - base_3_y  # rod 3
+        arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
+        span_3_z = arm_3_z + z - base_3_z  # rod 3
         # l3: quadratic in the rod 3 equation
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
-        if not (l3 > 1e-9*machine_scale):
+        if not (l3 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 3: without length it has no direction", 0.0)
-        span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x  # rod 4
-        span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y  # rod 4
-        span_4_z = z + platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33 - base_4_z  # rod 4
+        arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
+        span_4_x = arm_4_x + x - base_4_x  # rod 4
+        arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
+        span_4_y = arm_4_y + y - base_4_y  # rod 4
+        arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
+        span_4_z = arm_4_z + z - base_4_z  # rod 4
         # l4: quadratic in the rod 4 equation
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
-        if not (l4 > 1e-9*machine_scale):
+        if not (l4 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 4: without length it has no direction", 0.0)
-        span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x  # rod 5
-        span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y  # rod 5
-        span_5_z = z + platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33 - base_5_z  # rod 5
+        arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
+        span_5_x = arm_5_x + x - base_5_x  # rod 5
+        arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
+        span_5_y = arm_5_y + y - base_5_y  # rod 5
+        arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
+        span_5_z = arm_5_z + z - base_5_z  # rod 5
         # l5: quadratic in the rod 5 equation
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
-        if not (l5 > 1e-9*machine_scale):
+        if not (l5 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 5: without length it has no direction", 0.0)
-        span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x  # rod 6
-        span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y  # rod 6
-        span_6_z = z + platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33 - base_6_z  # rod 6
+        arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
+        span_6_x = arm_6_x + x - base_6_x  # rod 6
+        arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
+        span_6_y = arm_6_y + y - base_6_y  # rod 6
+        arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
+        span_6_z = arm_6_z + z - base_6_z  # rod 6
         # l6: quadratic in the rod 6 equation
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
-        if not (l6 > 1e-9*machine_scale):
+        if not (l6 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 6: without length it has no direction", 0.0)
-        # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = l1 if l1 > 1e-9*machine_scale else 1.0
-        along_1_x = span_1_x/divisor_1
-        along_1_y = span_1_y/divisor_1
-        along_1_z = span_1_z/divisor_1
+        one_by_divisor_1 = 1.0/l1
+        along_1_x = one_by_divisor_1*span_1_x
+        along_1_y = one_by_divisor_1*span_1_y
+        along_1_z = one_by_divisor_1*span_1_z
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
         # leg 1: its joint on the base bends beyond its cone
         if not (cos_base_lean_1 >= least_cos_base):
@@ -1675,11 +1710,10 @@ class Hexapod(IterativeForward):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "leg 1: its joint on the base bends beyond its cone [deg]", missing)
-        # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = l2 if l2 > 1e-9*machine_scale else 1.0
-        along_2_x = span_2_x/divisor_2
-        along_2_y = span_2_y/divisor_2
-        along_2_z = span_2_z/divisor_2
+        one_by_divisor_2 = 1.0/l2
+        along_2_x = one_by_divisor_2*span_2_x
+        along_2_y = one_by_divisor_2*span_2_y
+        along_2_z = one_by_divisor_2*span_2_z
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
         # leg 2: its joint on the base bends beyond its cone
         if not (cos_base_lean_2 >= least_cos_base):
@@ -1691,11 +1725,10 @@ class Hexapod(IterativeForward):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "leg 2: its joint on the base bends beyond its cone [deg]", missing)
-        # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = l3 if l3 > 1e-9*machine_scale else 1.0
-        along_3_x = span_3_x/divisor_3
-        along_3_y = span_3_y/divisor_3
-        along_3_z = span_3_z/divisor_3
+        one_by_divisor_3 = 1.0/l3
+        along_3_x = one_by_divisor_3*span_3_x
+        along_3_y = one_by_divisor_3*span_3_y
+        along_3_z = one_by_divisor_3*span_3_z
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
         # leg 3: its joint on the base bends beyond its cone
         if not (cos_base_lean_3 >= least_cos_base):
@@ -1707,11 +1740,10 @@ class Hexapod(IterativeForward):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "leg 3: its joint on the base bends beyond its cone [deg]", missing)
-        # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = l4 if l4 > 1e-9*machine_scale else 1.0
-        along_4_x = span_4_x/divisor_4
-        along_4_y = span_4_y/divisor_4
-        along_4_z = span_4_z/divisor_4
+        one_by_divisor_4 = 1.0/l4
+        along_4_x = one_by_divisor_4*span_4_x
+        along_4_y = one_by_divisor_4*span_4_y
+        along_4_z = one_by_divisor_4*span_4_z
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
         # leg 4: its joint on the base bends beyond its cone
         if not (cos_base_lean_4 >= least_cos_base):
@@ -1723,11 +1755,10 @@ class Hexapod(IterativeForward):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "leg 4: its joint on the base bends beyond its cone [deg]", missing)
-        # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = l5 if l5 > 1e-9*machine_scale else 1.0
-        along_5_x = span_5_x/divisor_5
-        along_5_y = span_5_y/divisor_5
-        along_5_z = span_5_z/divisor_5
+        one_by_divisor_5 = 1.0/l5
+        along_5_x = one_by_divisor_5*span_5_x
+        along_5_y = one_by_divisor_5*span_5_y
+        along_5_z = one_by_divisor_5*span_5_z
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
         # leg 5: its joint on the base bends beyond its cone
         if not (cos_base_lean_5 >= least_cos_base):
@@ -1739,11 +1770,10 @@ class Hexapod(IterativeForward):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "leg 5: its joint on the base bends beyond its cone [deg]", missing)
-        # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = l6 if l6 > 1e-9*machine_scale else 1.0
-        along_6_x = span_6_x/divisor_6
-        along_6_y = span_6_y/divisor_6
-        along_6_z = span_6_z/divisor_6
+        one_by_divisor_6 = 1.0/l6
+        along_6_x = one_by_divisor_6*span_6_x
+        along_6_y = one_by_divisor_6*span_6_y
+        along_6_z = one_by_divisor_6*span_6_z
         cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
         # leg 6: its joint on the base bends beyond its cone
         if not (cos_base_lean_6 >= least_cos_base):
@@ -1839,42 +1869,24 @@ class Hexapod(IterativeForward):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "leg 6: its joint on the plate bends beyond its cone [deg]", missing)
-        arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
-        arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
-        moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
-        arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
-        moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-        moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
-        arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
-        arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
-        moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
-        arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
-        moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-        moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
-        arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
-        arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
-        moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
-        arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
-        moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-        moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
-        arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
-        arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
-        moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
-        arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
-        moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-        moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
-        arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
-        arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
-        moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
-        arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
-        moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-        moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
-        arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
-        arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
-        moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
-        arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
-        moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-        moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
+        moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*one_by_platform_radius
+        moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*one_by_platform_radius
+        moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*one_by_platform_radius
+        moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*one_by_platform_radius
+        moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*one_by_platform_radius
+        moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*one_by_platform_radius
+        moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*one_by_platform_radius
+        moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*one_by_platform_radius
+        moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*one_by_platform_radius
+        moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*one_by_platform_radius
+        moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*one_by_platform_radius
+        moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*one_by_platform_radius
+        moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*one_by_platform_radius
+        moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*one_by_platform_radius
+        moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*one_by_platform_radius
+        moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*one_by_platform_radius
+        moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*one_by_platform_radius
+        moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*one_by_platform_radius
         # margin of the platform
         (determinant,) = solve(
             (
@@ -2005,7 +2017,7 @@ class Hexapod(IterativeForward):
         home_x = k.home_x
         home_y = k.home_y
         home_z = k.home_z
-        platform_radius = k.platform_radius
+        one_by_platform_radius = k.one_by_platform_radius
         # the platform on its rods, searched from the home pose
         found = self._find_platform(
             (
@@ -2056,16 +2068,19 @@ class Hexapod(IterativeForward):
             (column_1_vy, column_2_vy, column_3_vy, column_4_vy, column_5_vy, column_6_vy),
             (column_1_vz, column_2_vz, column_3_vz, column_4_vz, column_5_vz, column_6_vz),
             (
-                column_1_wx/platform_radius, column_2_wx/platform_radius, column_3_wx/platform_radius,
-                column_4_wx/platform_radius, column_5_wx/platform_radius, column_6_wx/platform_radius,
+                column_1_wx*one_by_platform_radius, column_2_wx*one_by_platform_radius,
+                column_3_wx*one_by_platform_radius, column_4_wx*one_by_platform_radius,
+                column_5_wx*one_by_platform_radius, column_6_wx*one_by_platform_radius,
             ),
             (
-                column_1_wy/platform_radius, column_2_wy/platform_radius, column_3_wy/platform_radius,
-                column_4_wy/platform_radius, column_5_wy/platform_radius, column_6_wy/platform_radius,
+                column_1_wy*one_by_platform_radius, column_2_wy*one_by_platform_radius,
+                column_3_wy*one_by_platform_radius, column_4_wy*one_by_platform_radius,
+                column_5_wy*one_by_platform_radius, column_6_wy*one_by_platform_radius,
             ),
             (
-                column_1_wz/platform_radius, column_2_wz/platform_radius, column_3_wz/platform_radius,
-                column_4_wz/platform_radius, column_5_wz/platform_radius, column_6_wz/platform_radius,
+                column_1_wz*one_by_platform_radius, column_2_wz*one_by_platform_radius,
+                column_3_wz*one_by_platform_radius, column_4_wz*one_by_platform_radius,
+                column_5_wz*one_by_platform_radius, column_6_wz*one_by_platform_radius,
             ),
         )
 

@@ -15,8 +15,8 @@ Singularities:
     none
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 4 additions, 4 multiplications, 0 divisions, 0 square roots, 0 sines
-    inverse: 9 additions, 6 multiplications, 0 divisions, 0 square roots, 0 sines
+    forward: 4 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
+    inverse: 9 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -76,6 +76,7 @@ class Constants(NamedTuple):
     lowest_y: float
     highest_y: float
     machine_scale: float
+    machine_scale_times_plane: float
 
 
 class HGantry2(OffsetKinematics):
@@ -241,6 +242,7 @@ class HGantry2(OffsetKinematics):
         lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
         highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
         machine_scale = 1.0  # a length of the machine
+        machine_scale_times_plane = 1e-6*machine_scale
         return Constants(
             offset_a=offset_a, offset_b=offset_b, check_limits=check_limits, lower_a=effective_lower_a,
             upper_a=effective_upper_a, unlimited_a=unlimited_a, lowest_a=lowest_a, highest_a=highest_a,
@@ -248,6 +250,7 @@ class HGantry2(OffsetKinematics):
             highest_b=highest_b, lower_x=effective_lower_x, upper_x=effective_upper_x, unlimited_x=unlimited_x,
             lowest_x=lowest_x, highest_x=highest_x, lower_y=effective_lower_y, upper_y=effective_upper_y,
             unlimited_y=unlimited_y, lowest_y=lowest_y, highest_y=highest_y, machine_scale=machine_scale,
+            machine_scale_times_plane=machine_scale_times_plane,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -261,8 +264,8 @@ class HGantry2(OffsetKinematics):
             return Status.BAD_INPUT
         a = axis_a - offset_a
         b = axis_b - offset_b
-        x = 0.5*a - 0.5*b
-        y = -0.5*a - 0.5*b
+        x = 0.5*(a - b)
+        y = -0.5*(a + b)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ())
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
@@ -279,15 +282,15 @@ class HGantry2(OffsetKinematics):
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self._constants
-        machine_scale = k.machine_scale
+        machine_scale_times_plane = k.machine_scale_times_plane
         offset_a = k.offset_a
         offset_b = k.offset_b
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(z) <= 1e-6*machine_scale):
-            missing = abs(z) - 1e-6*machine_scale
+        if not (abs(z) <= machine_scale_times_plane):
+            missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
@@ -325,7 +328,7 @@ class HGantry2(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "B: above its upper limit [u]", missing)
         a = axis_a - offset_a
         b = axis_b - offset_b
-        value_x = 0.5*a - 0.5*b  # X of the carriage
+        value_x = 0.5*(a - b)  # X of the carriage
         # limits of X of the carriage
         if not (value_x >= lowest_x):
             missing = lowest_x - value_x
@@ -333,7 +336,7 @@ class HGantry2(OffsetKinematics):
         if not (value_x <= highest_x):
             missing = value_x - highest_x
             return Diagnosis(Status.UNREACHABLE, "X of the carriage: above its upper limit [u]", missing)
-        value_y = -0.5*a - 0.5*b  # Y of the carriage
+        value_y = -0.5*(a + b)  # Y of the carriage
         # limits of Y of the carriage
         if not (value_y >= lowest_y):
             missing = lowest_y - value_y
@@ -370,7 +373,7 @@ class HGantry2(OffsetKinematics):
         x, y, z = point
         point_x, point_y, point_z = offset
         k = self._constants
-        machine_scale = k.machine_scale
+        machine_scale_times_plane = k.machine_scale_times_plane
         offset_a = k.offset_a
         offset_b = k.offset_b
         # numbers of reasonable size
@@ -380,12 +383,14 @@ class HGantry2(OffsetKinematics):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(point_z - z) <= 1e-6*machine_scale):
-            missing = abs(point_z - z) - 1e-6*machine_scale
+        if not (abs(point_z - z) <= machine_scale_times_plane):
+            missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        a = point_y + x - point_x - y  # a, b: affine in the x and y equations
+        y_minus_point_y = y - point_y
+        x_minus_point_x = x - point_x
+        a = x_minus_point_x - y_minus_point_y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
-        b = point_x + point_y - x - y
+        b = -x_minus_point_x - y_minus_point_y
         axis_b = b + offset_b
         return (axis_a, axis_b)
 

@@ -16,8 +16,8 @@ Singularities:
     none
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 5 additions, 4 multiplications, 0 divisions, 0 square roots, 0 sines
-    inverse: 10 additions, 4 multiplications, 0 divisions, 0 square roots, 0 sines
+    forward: 5 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
+    inverse: 10 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -304,8 +304,8 @@ class HGantry3(OffsetKinematics):
             return Status.BAD_INPUT
         a = axis_a - offset_a
         b = axis_b - offset_b
-        x = 0.5*a - 0.5*b
-        y = -0.5*a - 0.5*b
+        x = 0.5*(a - b)
+        y = -0.5*(a + b)
         joint_z = axis_z - offset_z
         return ((x, y, joint_z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ())
 
@@ -375,7 +375,7 @@ class HGantry3(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "Z: above its upper limit [u]", missing)
         a = axis_a - offset_a
         b = axis_b - offset_b
-        value_x = 0.5*a - 0.5*b  # X of the carriage
+        value_x = 0.5*(a - b)  # X of the carriage
         # limits of X of the carriage
         if not (value_x >= lowest_x):
             missing = lowest_x - value_x
@@ -383,7 +383,7 @@ class HGantry3(OffsetKinematics):
         if not (value_x <= highest_x):
             missing = value_x - highest_x
             return Diagnosis(Status.UNREACHABLE, "X of the carriage: above its upper limit [u]", missing)
-        value_y = -0.5*a - 0.5*b  # Y of the carriage
+        value_y = -0.5*(a + b)  # Y of the carriage
         # limits of Y of the carriage
         if not (value_y >= lowest_y):
             missing = lowest_y - value_y
@@ -429,9 +429,11 @@ class HGantry3(OffsetKinematics):
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        a = point_y + x - point_x - y  # a, b: affine in the x and y equations
+        y_minus_point_y = y - point_y
+        x_minus_point_x = x - point_x
+        a = x_minus_point_x - y_minus_point_y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
-        b = point_x + point_y - x - y
+        b = -x_minus_point_x - y_minus_point_y
         axis_b = b + offset_b
         joint_z = z - point_z  # joint_z: affine in the z equation
         axis_z = joint_z + offset_z

@@ -20,9 +20,9 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 38 additions, 54 multiplications, 13 divisions, 2 square roots, 4 sines
-    inverse: 62 additions, 71 multiplications, 27 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 245 additions, 284 multiplications, 108 divisions, 16 square roots, 8 sines
+    forward: 30 additions, 35 multiplications, 5 divisions, 2 square roots, 4 sines
+    inverse: 52 additions, 51 multiplications, 16 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 205 additions, 204 multiplications, 64 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -87,8 +87,32 @@ class Constants(NamedTuple):
     single_a2: bool
     mid_a2: float
     machine_scale: float
-    radius_2: float
     assembly_sign: float
+    part_of_normal_divisor: float
+    link_length_2_squared_times_rounding: float
+    link_length_2_plus_radius_2: float
+    link_length_2_minus_radius_2: float
+    part_of_along_centres: float
+    part_of_pivot_rear_x: float
+    link_length_2_by_link_length_3: float
+    link_length_3_by_link_length_2: float
+    link_length_2_times_link_length_4: float
+    part_of_branch_w: float
+    machine_scale_times_plane: float
+    link_length_1_times_shortest_link: float
+    link_length_5_times_shortest_link: float
+    twice_link_length_1: float
+    link_length_1_minus_link_length_2: float
+    link_length_1_plus_link_length_2: float
+    twice_link_length_5: float
+    link_length_5_minus_link_length_4: float
+    link_length_4_plus_link_length_5: float
+    part_of_type2_arms_aligned: float
+    part_of_margin_arms_aligned: float
+    machine_scale_squared_times_free_angle: float
+    part_of_slope_2_by_x: float
+    link_length_3_times_2_by_link_length_2: float
+    part_of_slope_2_by_a1: float
 
 
 class KinType12XY(OffsetKinematics):
@@ -303,6 +327,32 @@ class KinType12XY(OffsetKinematics):
         radius_2 = link_length_2*link_length_4/link_length_3
         # assembly mode of this machine
         assembly_sign = (-1.0 if e_right else 1.0) if not swap_xy else (1.0 if e_right else -1.0)
+        part_of_normal_divisor = 1e-22*link_length_2*link_length_2
+        link_length_2_squared_times_rounding = 1e-12*link_length_2*link_length_2
+        link_length_2_plus_radius_2 = link_length_2 + radius_2
+        link_length_2_minus_radius_2 = link_length_2 - radius_2
+        part_of_along_centres = link_length_2_minus_radius_2*link_length_2_plus_radius_2
+        part_of_pivot_rear_x = link_length_1*link_length_3/link_length_2
+        link_length_2_by_link_length_3 = link_length_2/link_length_3
+        link_length_3_by_link_length_2 = link_length_3/link_length_2
+        link_length_2_times_link_length_4 = link_length_2*link_length_4
+        part_of_branch_w = link_length_1*(link_length_2 + link_length_3)
+        machine_scale_times_plane = 1e-6*machine_scale
+        link_length_1_times_shortest_link = 1e-9*link_length_1
+        link_length_5_times_shortest_link = 1e-9*link_length_5
+        twice_link_length_1 = 2.0*link_length_1
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+        twice_link_length_5 = 2.0*link_length_5
+        link_length_5_minus_link_length_4 = link_length_5 - link_length_4
+        link_length_4_plus_link_length_5 = link_length_4 + link_length_5
+        part_of_type2_arms_aligned = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
+        part_of_margin_arms_aligned = link_length_3/(link_length_4*link_length_2*link_length_2)
+        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
+        link_length_3_by_link_length_2_plus_one = 1.0 + link_length_3_by_link_length_2
+        part_of_slope_2_by_x = link_length_1*link_length_3_by_link_length_2_plus_one
+        link_length_3_times_2_by_link_length_2 = 2.0*link_length_3/link_length_2
+        part_of_slope_2_by_a1 = 2.0*link_length_1*link_length_3_by_link_length_2_plus_one
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, link_length_3=link_length_3,
             link_length_4=link_length_4, link_length_5=link_length_5, swap_xy=swap_xy, offset_a1=offset_a1,
@@ -310,8 +360,29 @@ class KinType12XY(OffsetKinematics):
             lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
             highest_a1=highest_a1, single_a1=single_a1, mid_a1=mid_a1, lower_a2=effective_lower_a2,
             upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2,
-            single_a2=single_a2, mid_a2=mid_a2, machine_scale=machine_scale, radius_2=radius_2,
-            assembly_sign=assembly_sign,
+            single_a2=single_a2, mid_a2=mid_a2, machine_scale=machine_scale, assembly_sign=assembly_sign,
+            part_of_normal_divisor=part_of_normal_divisor,
+            link_length_2_squared_times_rounding=link_length_2_squared_times_rounding,
+            link_length_2_plus_radius_2=link_length_2_plus_radius_2,
+            link_length_2_minus_radius_2=link_length_2_minus_radius_2, part_of_along_centres=part_of_along_centres,
+            part_of_pivot_rear_x=part_of_pivot_rear_x, link_length_2_by_link_length_3=link_length_2_by_link_length_3,
+            link_length_3_by_link_length_2=link_length_3_by_link_length_2,
+            link_length_2_times_link_length_4=link_length_2_times_link_length_4, part_of_branch_w=part_of_branch_w,
+            machine_scale_times_plane=machine_scale_times_plane,
+            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
+            link_length_5_times_shortest_link=link_length_5_times_shortest_link,
+            twice_link_length_1=twice_link_length_1,
+            link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
+            link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
+            twice_link_length_5=twice_link_length_5,
+            link_length_5_minus_link_length_4=link_length_5_minus_link_length_4,
+            link_length_4_plus_link_length_5=link_length_4_plus_link_length_5,
+            part_of_type2_arms_aligned=part_of_type2_arms_aligned,
+            part_of_margin_arms_aligned=part_of_margin_arms_aligned,
+            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
+            part_of_slope_2_by_x=part_of_slope_2_by_x,
+            link_length_3_times_2_by_link_length_2=link_length_3_times_2_by_link_length_2,
+            part_of_slope_2_by_a1=part_of_slope_2_by_a1,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -321,12 +392,19 @@ class KinType12XY(OffsetKinematics):
         assembly_sign = k.assembly_sign
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
-        link_length_4 = k.link_length_4
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
+        link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
+        link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
+        link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
+        link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
+        link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        radius_2 = k.radius_2
+        part_of_along_centres = k.part_of_along_centres
+        part_of_branch_w = k.part_of_branch_w
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_rear_x = k.part_of_pivot_rear_x
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -344,33 +422,32 @@ class KinType12XY(OffsetKinematics):
             centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod rear
-        pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
+        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
         sin_a2 = sin(a2)
-        # rod rear
-        pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
+        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*link_length_2*link_length_2):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        one_by_normal_divisor = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(link_length_2 + radius_2 - between_centres)*(between_centres + link_length_2 + radius_2)
-            *(between_centres + link_length_2 - radius_2)*(between_centres + radius_2 - link_length_2)/normal_divisor
+            0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
+            *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
+            *one_by_normal_divisor
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*link_length_2*link_length_2):
+        if not (height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_divisor + (link_length_2 + radius_2)*(link_length_2 - radius_2))/normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
         foot_x = along_centres*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
@@ -382,15 +459,14 @@ class KinType12XY(OffsetKinematics):
             span_upper_x = x
             span_upper_y = y
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        span_rear_x = -(y if swap_xy else x)*link_length_3/link_length_2  # rod rear
-        span_rear_y = -(x if swap_xy else y)*link_length_3/link_length_2  # rod rear
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
         branch_w = (
             (
-                link_length_1*link_length_2*cos_a1*cos_a2 + link_length_1*link_length_3*cos_a1*cos_a2
-                + link_length_1*link_length_2*sin_a1*sin_a2 + link_length_1*link_length_3*sin_a1*sin_a2
-                - link_length_2*span_rear_y*cos_a2 - link_length_2*span_rear_x*sin_a2
+                (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)*cos_a2
+                + (part_of_branch_w*sin_a1 - link_length_2*span_rear_x)*sin_a2
             )
-            /(link_length_2*link_length_4)
+            /link_length_2_times_link_length_4
         )
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_t, branch_w))
 
@@ -399,12 +475,15 @@ class KinType12XY(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
+        link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
+        link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
+        link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        radius_2 = k.radius_2
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_rear_x = k.part_of_pivot_rear_x
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -422,28 +501,26 @@ class KinType12XY(OffsetKinematics):
             centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod rear
-        pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
+        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
         sin_a2 = sin(a2)
-        # rod rear
-        pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
+        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*link_length_2*link_length_2):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            0.25*(link_length_2 + radius_2 - between_centres)*(between_centres + link_length_2 + radius_2)
-            *(between_centres + link_length_2 - radius_2)*(between_centres + radius_2 - link_length_2)/normal_divisor
+            0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
+            *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
+            /normal_square
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*link_length_2*link_length_2):
+        if not (height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -456,21 +533,31 @@ class KinType12XY(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        assembly_sign = k.assembly_sign
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
+        link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
         link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
-        link_length_4 = k.link_length_4
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
+        link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
+        link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
         link_length_5 = k.link_length_5
-        machine_scale = k.machine_scale
+        link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
+        link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        part_of_branch_w = k.part_of_branch_w
+        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         swap_xy = k.swap_xy
+        twice_link_length_1 = k.twice_link_length_1
+        twice_link_length_5 = k.twice_link_length_5
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -478,8 +565,8 @@ class KinType12XY(OffsetKinematics):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(z) <= 1e-6*machine_scale):
-            missing = abs(z) - 1e-6*machine_scale
+        if not (abs(z) <= machine_scale_times_plane):
+            missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         # rod upper
         if swap_xy:
@@ -491,56 +578,60 @@ class KinType12XY(OffsetKinematics):
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*link_length_1):
+        if not (effective_a1 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
+        swing_scale_a1 = effective_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
         # 1 - cosine, times the scale
-        one_less_cos_a1 = (divisor_a1 + link_length_1 + link_length_2)*(divisor_a1 + link_length_1 - link_length_2)
+        one_less_cos_a1 = (
+            (effective_a1 + link_length_1_minus_link_length_2)*(effective_a1 + link_length_1_plus_link_length_2)
+        )
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_2 - link_length_1)
+        one_plus_cos_a1 = (
+            (link_length_1_plus_link_length_2 - effective_a1)*(effective_a1 - link_length_1_minus_link_length_2)
+        )
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             missing = (
-                0.5*abs(link_length_1 + link_length_2 - divisor_a1) + 0.5*abs(divisor_a1 + link_length_2 - link_length_1)
-                + 0.5*abs(divisor_a1 + link_length_1 - link_length_2)
-                + 0.5*abs(divisor_a1 + link_length_1 + link_length_2) - divisor_a1 - link_length_1 - link_length_2
+                0.5*abs(effective_a1 - link_length_1_minus_link_length_2)
+                + 0.5*abs(effective_a1 + link_length_1_minus_link_length_2)
+                + 0.5*abs(effective_a1 - link_length_1_plus_link_length_2)
+                + 0.5*abs(effective_a1 + link_length_1_plus_link_length_2) - effective_a1
+                - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
-        sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-        span_rear_x = -(y if swap_xy else x)*link_length_3/link_length_2  # rod rear
-        along_a2 = (
-            (link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1 - link_length_1*link_length_3*sin_a1)
-            /link_length_2
-        )
-        cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
-        span_rear_y = -(x if swap_xy else y)*link_length_3/link_length_2  # rod rear
-        across_a2 = (
-            (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
-            /link_length_2
-        )
+        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
+        along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
+        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
+        across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*link_length_5):
+        if not (effective_a2 > link_length_5_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_5 else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*link_length_5  # a2: law of cosines in the rod rear equation
+        swing_scale_a2 = effective_a2*twice_link_length_5  # a2: law of cosines in the rod rear equation
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (divisor_a2 + link_length_4 + link_length_5)*(divisor_a2 + link_length_5 - link_length_4)
+        one_less_cos_a2 = (
+            (effective_a2 + link_length_4_plus_link_length_5)*(effective_a2 + link_length_5_minus_link_length_4)
+        )
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_4 + link_length_5 - divisor_a2)*(divisor_a2 + link_length_4 - link_length_5)
+        one_plus_cos_a2 = (
+            (link_length_4_plus_link_length_5 - effective_a2)*(effective_a2 - link_length_5_minus_link_length_4)
+        )
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             missing = (
-                0.5*abs(link_length_4 + link_length_5 - divisor_a2) + 0.5*abs(divisor_a2 + link_length_5 - link_length_4)
-                + 0.5*abs(divisor_a2 + link_length_4 - link_length_5)
-                + 0.5*abs(divisor_a2 + link_length_4 + link_length_5) - divisor_a2 - link_length_4 - link_length_5
+                0.5*abs(effective_a2 - link_length_4_plus_link_length_5)
+                + 0.5*abs(effective_a2 + link_length_4_plus_link_length_5)
+                + 0.5*abs(effective_a2 - link_length_5_minus_link_length_4)
+                + 0.5*abs(effective_a2 + link_length_5_minus_link_length_4) - effective_a2
+                - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
@@ -557,20 +648,15 @@ class KinType12XY(OffsetKinematics):
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
-        cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
-        # rod rear
-        pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
-        sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
-        # rod rear
-        pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
+        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
+        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/effective_a2
+        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
+        centre_2_x = (-pivot_rear_y if swap_xy else -pivot_rear_x)*link_length_2_by_link_length_3
         rod_2_x = x - centre_2_x
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
+        centre_2_y = (-pivot_rear_x if swap_xy else -pivot_rear_y)*link_length_2_by_link_length_3
         rod_2_y = y - centre_2_y
-        type2_arms_aligned = (
-            assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
-            /(link_length_4*link_length_2*link_length_2)
-        )
+        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
@@ -628,12 +714,20 @@ class KinType12XY(OffsetKinematics):
         assembly_sign = k.assembly_sign
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
-        link_length_4 = k.link_length_4
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
+        link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
+        link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
+        link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
+        link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
+        link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        radius_2 = k.radius_2
+        part_of_along_centres = k.part_of_along_centres
+        part_of_branch_w = k.part_of_branch_w
+        part_of_margin_arms_aligned = k.part_of_margin_arms_aligned
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_rear_x = k.part_of_pivot_rear_x
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -651,33 +745,32 @@ class KinType12XY(OffsetKinematics):
             centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod rear
-        pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
+        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
         sin_a2 = sin(a2)
-        # rod rear
-        pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
+        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*link_length_2*link_length_2):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        one_by_normal_divisor = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(link_length_2 + radius_2 - between_centres)*(between_centres + link_length_2 + radius_2)
-            *(between_centres + link_length_2 - radius_2)*(between_centres + radius_2 - link_length_2)/normal_divisor
+            0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
+            *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
+            *one_by_normal_divisor
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*link_length_2*link_length_2):
+        if not (height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_divisor + (link_length_2 + radius_2)*(link_length_2 - radius_2))/normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
         foot_x = along_centres*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
@@ -689,23 +782,20 @@ class KinType12XY(OffsetKinematics):
             span_upper_x = x
             span_upper_y = y
         margin_stretched_1 = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        span_rear_x = -(y if swap_xy else x)*link_length_3/link_length_2  # rod rear
-        span_rear_y = -(x if swap_xy else y)*link_length_3/link_length_2  # rod rear
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
         margin_stretched_2 = (
             (
-                link_length_1*link_length_2*cos_a1*cos_a2 + link_length_1*link_length_3*cos_a1*cos_a2
-                + link_length_1*link_length_2*sin_a1*sin_a2 + link_length_1*link_length_3*sin_a1*sin_a2
-                - link_length_2*span_rear_y*cos_a2 - link_length_2*span_rear_x*sin_a2
+                (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)*cos_a2
+                + (part_of_branch_w*sin_a1 - link_length_2*span_rear_x)*sin_a2
             )
-            /(link_length_2*link_length_4)
+            /link_length_2_times_link_length_4
         )
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
         rod_2_x = x - centre_2_x
         rod_2_y = y - centre_2_y
-        margin_arms_aligned = (
-            link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(link_length_4*link_length_2*link_length_2)
-        )
+        margin_arms_aligned = part_of_margin_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         return (margin_stretched_1, margin_stretched_2, margin_arms_aligned)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -714,14 +804,24 @@ class KinType12XY(OffsetKinematics):
         k = self._constants
         assembly_sign = k.assembly_sign
         link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
+        link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
+        link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
+        link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
+        link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
+        link_length_3_times_2_by_link_length_2 = k.link_length_3_times_2_by_link_length_2
         link_length_5 = k.link_length_5
-        machine_scale = k.machine_scale
+        machine_scale_squared_times_free_angle = k.machine_scale_squared_times_free_angle
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        radius_2 = k.radius_2
+        part_of_along_centres = k.part_of_along_centres
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_slope_2_by_a1 = k.part_of_slope_2_by_a1
+        part_of_slope_2_by_x = k.part_of_slope_2_by_x
         swap_xy = k.swap_xy
+        twice_link_length_1 = k.twice_link_length_1
+        twice_link_length_5 = k.twice_link_length_5
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -738,131 +838,82 @@ class KinType12XY(OffsetKinematics):
             centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod rear
-        pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
+        cos_a2_times_link_length_5 = link_length_5*cos_a2
+        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - cos_a2_times_link_length_5 - pivot_upper_x  # rod rear
         sin_a2 = sin(a2)
-        # rod rear
-        pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
+        link_length_5_times_sin_a2 = link_length_5*sin_a2
+        pivot_rear_y = link_length_5_times_sin_a2 + part_of_pivot_rear_x*cos_a1 - pivot_upper_y  # rod rear
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*link_length_2*link_length_2):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        one_by_normal_divisor = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(link_length_2 + radius_2 - between_centres)*(between_centres + link_length_2 + radius_2)
-            *(between_centres + link_length_2 - radius_2)*(between_centres + radius_2 - link_length_2)/normal_divisor
+            0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
+            *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
+            *one_by_normal_divisor
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*link_length_2*link_length_2):
+        if not (height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
+        twice_link_length_1_times_sin_a1 = twice_link_length_1*sin_a1
+        twice_link_length_1_times_cos_a1 = twice_link_length_1*cos_a1
         # foot of the height, as a share
-        along_centres = 0.5*(normal_divisor + (link_length_2 + radius_2)*(link_length_2 - radius_2))/normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
         foot_x = along_centres*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
+        twice_x = -2.0*x
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
+        twice_y = -2.0*y
         if swap_xy:
-            slope_1_by_x = 2.0*x + 2.0*link_length_1*cos_a1
-            slope_1_by_y = 2.0*y + 2.0*link_length_1*sin_a1
+            slope_1_by_x = twice_link_length_1_times_cos_a1 - twice_x
+            slope_1_by_y = twice_link_length_1_times_sin_a1 - twice_y
         else:
-            slope_1_by_x = 2.0*x + 2.0*link_length_1*sin_a1
-            slope_1_by_y = 2.0*y + 2.0*link_length_1*cos_a1
+            slope_1_by_x = twice_link_length_1_times_sin_a1 - twice_x
+            slope_1_by_y = twice_link_length_1_times_cos_a1 - twice_y
+        link_length_3_by_link_length_2_times_x = -link_length_3_by_link_length_2*x
+        part_of_slope_2_by_y = cos_a2_times_link_length_5 - part_of_slope_2_by_x*sin_a1
+        part_of_slope_2_by_x_2 = link_length_3_by_link_length_2_times_x + part_of_slope_2_by_y
+        part_of_slope_2_by_y_2 = link_length_5_times_sin_a2 + part_of_slope_2_by_x*cos_a1
+        part_of_slope_2_by_x_3 = part_of_slope_2_by_y_2 - link_length_3_by_link_length_2_times_x
         slope_2_by_x = (
-            -2.0
-            *(
-                -link_length_5*sin_a2 - (
-                    1.0 + link_length_3/link_length_2
-                )*link_length_1*cos_a1 - link_length_3*x/link_length_2
-                if swap_xy
-                else link_length_5*cos_a2 - (
-                    1.0 + link_length_3/link_length_2
-                )*link_length_1*sin_a1 - link_length_3*x/link_length_2
-            )
-            *link_length_3/link_length_2
+            -(-part_of_slope_2_by_x_3 if swap_xy else part_of_slope_2_by_x_2)*link_length_3_times_2_by_link_length_2
         )
+        link_length_3_by_link_length_2_times_y = -link_length_3_by_link_length_2*y
+        part_of_slope_2_by_y_3 = part_of_slope_2_by_y_2 - link_length_3_by_link_length_2_times_y
+        part_of_slope_2_by_y_4 = link_length_3_by_link_length_2_times_y + part_of_slope_2_by_y
         slope_2_by_y = (
-            -2.0
-            *(
-                link_length_5*cos_a2 - (
-                    1.0 + link_length_3/link_length_2
-                )*link_length_1*sin_a1 - link_length_3*y/link_length_2
-                if swap_xy
-                else -link_length_5*sin_a2 - (
-                    1.0 + link_length_3/link_length_2
-                )*link_length_1*cos_a1 - link_length_3*y/link_length_2
-            )
-            *link_length_3/link_length_2
+            -(part_of_slope_2_by_y_4 if swap_xy else -part_of_slope_2_by_y_3)*link_length_3_times_2_by_link_length_2
         )
         # of the closure by the position: zero in a type 2 singularity
         determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x
         # nothing controls the plate
-        if not (abs(determinant) > 1e-11*machine_scale*machine_scale):
+        if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
         if swap_xy:
-            slope_1_by_a1 = (
-                2.0*link_length_1*(y + link_length_1*sin_a1)*cos_a1 - 2.0*link_length_1*(x + link_length_1*cos_a1)*sin_a1
-            )
-            slope_2_by_a1 = (
-                2.0*(
-                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
-                    - link_length_3*x/link_length_2
-                )*(1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                - 2.0*(1.0 + link_length_3/link_length_2)*link_length_1*cos_a1*(
-                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                    - link_length_3*y/link_length_2
-                )
-            )
-            slope_2_by_a2 = (
-                -2.0*(
-                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
-                    - link_length_3*x/link_length_2
-                )*link_length_5*cos_a2
-                - 2.0*link_length_5*(
-                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                    - link_length_3*y/link_length_2
-                )*sin_a2
-            )
+            slope_1_by_a1 = twice_link_length_1*((y - pivot_upper_x)*cos_a1 + (pivot_upper_y - x)*sin_a1)
+            slope_2_by_a1 = (-part_of_slope_2_by_y_4*cos_a1 - part_of_slope_2_by_x_3*sin_a1)*part_of_slope_2_by_a1
+            slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_x_3*cos_a2 - part_of_slope_2_by_y_4*sin_a2)
         else:
-            slope_1_by_a1 = (
-                2.0*link_length_1*(x + link_length_1*sin_a1)*cos_a1 - 2.0*link_length_1*(y + link_length_1*cos_a1)*sin_a1
-            )
-            slope_2_by_a1 = (
-                2.0*(
-                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
-                    - link_length_3*y/link_length_2
-                )*(1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                - 2.0*(1.0 + link_length_3/link_length_2)*link_length_1*cos_a1*(
-                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                    - link_length_3*x/link_length_2
-                )
-            )
-            slope_2_by_a2 = (
-                -2.0*(
-                    -link_length_5*sin_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*cos_a1
-                    - link_length_3*y/link_length_2
-                )*link_length_5*cos_a2
-                - 2.0*link_length_5*(
-                    link_length_5*cos_a2 - (1.0 + link_length_3/link_length_2)*link_length_1*sin_a1
-                    - link_length_3*x/link_length_2
-                )*sin_a2
-            )
-        determinant_divisor = determinant if abs(determinant) > 1e-11*machine_scale*machine_scale else 1.0
+            slope_1_by_a1 = twice_link_length_1*((x - pivot_upper_x)*cos_a1 + (pivot_upper_y - y)*sin_a1)
+            slope_2_by_a1 = (-part_of_slope_2_by_x_2*cos_a1 - part_of_slope_2_by_y_3*sin_a1)*part_of_slope_2_by_a1
+            slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_y_3*cos_a2 - part_of_slope_2_by_x_2*sin_a2)
+        one_by_determinant_divisor = 1.0/determinant
+        part = -one_by_determinant_divisor*slope_2_by_a2
         return (
             (
-                (slope_1_by_y*slope_2_by_a1 - slope_1_by_a1*slope_2_by_y)/determinant_divisor,
-                slope_1_by_y*slope_2_by_a2/determinant_divisor,
+                (slope_1_by_y*slope_2_by_a1 - slope_1_by_a1*slope_2_by_y)*one_by_determinant_divisor,
+                -part*slope_1_by_y,
             ),
-            (
-                (slope_1_by_a1*slope_2_by_x - slope_1_by_x*slope_2_by_a1)/determinant_divisor,
-                -slope_1_by_x*slope_2_by_a2/determinant_divisor,
-            ),
+            (one_by_determinant_divisor*(slope_1_by_a1*slope_2_by_x - slope_1_by_x*slope_2_by_a1), part*slope_1_by_x),
         )
 
     def _image(self) -> Image | Status:
@@ -879,21 +930,31 @@ class KinType12XY(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        assembly_sign = k.assembly_sign
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
+        link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
         link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
-        link_length_4 = k.link_length_4
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
+        link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
+        link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
         link_length_5 = k.link_length_5
-        machine_scale = k.machine_scale
+        link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
+        link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        part_of_branch_w = k.part_of_branch_w
+        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         swap_xy = k.swap_xy
+        twice_link_length_1 = k.twice_link_length_1
+        twice_link_length_5 = k.twice_link_length_5
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -901,8 +962,8 @@ class KinType12XY(OffsetKinematics):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(point_z - z) <= 1e-6*machine_scale):
-            missing = abs(point_z - z) - 1e-6*machine_scale
+        if not (abs(point_z - z) <= machine_scale_times_plane):
+            missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_x = x - point_x  # the flange behind the point
         flange_y = y - point_y  # the flange behind the point
@@ -916,56 +977,60 @@ class KinType12XY(OffsetKinematics):
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*link_length_1):
+        if not (effective_a1 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
+        swing_scale_a1 = effective_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
         # 1 - cosine, times the scale
-        one_less_cos_a1 = (divisor_a1 + link_length_1 + link_length_2)*(divisor_a1 + link_length_1 - link_length_2)
+        one_less_cos_a1 = (
+            (effective_a1 + link_length_1_minus_link_length_2)*(effective_a1 + link_length_1_plus_link_length_2)
+        )
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_2 - link_length_1)
+        one_plus_cos_a1 = (
+            (link_length_1_plus_link_length_2 - effective_a1)*(effective_a1 - link_length_1_minus_link_length_2)
+        )
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             missing = (
-                0.5*abs(link_length_1 + link_length_2 - divisor_a1) + 0.5*abs(divisor_a1 + link_length_2 - link_length_1)
-                + 0.5*abs(divisor_a1 + link_length_1 - link_length_2)
-                + 0.5*abs(divisor_a1 + link_length_1 + link_length_2) - divisor_a1 - link_length_1 - link_length_2
+                0.5*abs(effective_a1 - link_length_1_minus_link_length_2)
+                + 0.5*abs(effective_a1 + link_length_1_minus_link_length_2)
+                + 0.5*abs(effective_a1 - link_length_1_plus_link_length_2)
+                + 0.5*abs(effective_a1 + link_length_1_plus_link_length_2) - effective_a1
+                - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
-        sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-        span_rear_x = -(flange_y if swap_xy else flange_x)*link_length_3/link_length_2  # rod rear
-        along_a2 = (
-            (link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1 - link_length_1*link_length_3*sin_a1)
-            /link_length_2
-        )
-        cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
-        span_rear_y = -(flange_x if swap_xy else flange_y)*link_length_3/link_length_2  # rod rear
-        across_a2 = (
-            (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
-            /link_length_2
-        )
+        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
+        along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
+        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
+        across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*link_length_5):
+        if not (effective_a2 > link_length_5_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_5 else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*link_length_5  # a2: law of cosines in the rod rear equation
+        swing_scale_a2 = effective_a2*twice_link_length_5  # a2: law of cosines in the rod rear equation
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (divisor_a2 + link_length_4 + link_length_5)*(divisor_a2 + link_length_5 - link_length_4)
+        one_less_cos_a2 = (
+            (effective_a2 + link_length_4_plus_link_length_5)*(effective_a2 + link_length_5_minus_link_length_4)
+        )
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_4 + link_length_5 - divisor_a2)*(divisor_a2 + link_length_4 - link_length_5)
+        one_plus_cos_a2 = (
+            (link_length_4_plus_link_length_5 - effective_a2)*(effective_a2 - link_length_5_minus_link_length_4)
+        )
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             missing = (
-                0.5*abs(link_length_4 + link_length_5 - divisor_a2) + 0.5*abs(divisor_a2 + link_length_5 - link_length_4)
-                + 0.5*abs(divisor_a2 + link_length_4 - link_length_5)
-                + 0.5*abs(divisor_a2 + link_length_4 + link_length_5) - divisor_a2 - link_length_4 - link_length_5
+                0.5*abs(effective_a2 - link_length_4_plus_link_length_5)
+                + 0.5*abs(effective_a2 + link_length_4_plus_link_length_5)
+                + 0.5*abs(effective_a2 - link_length_5_minus_link_length_4)
+                + 0.5*abs(effective_a2 + link_length_5_minus_link_length_4) - effective_a2
+                - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
@@ -982,20 +1047,15 @@ class KinType12XY(OffsetKinematics):
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
-        cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
-        # rod rear
-        pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
-        sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
-        # rod rear
-        pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
+        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
+        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/effective_a2
+        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
+        centre_2_x = (-pivot_rear_y if swap_xy else -pivot_rear_x)*link_length_2_by_link_length_3
         rod_2_x = flange_x - centre_2_x
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
+        centre_2_y = (-pivot_rear_x if swap_xy else -pivot_rear_y)*link_length_2_by_link_length_3
         rod_2_y = flange_y - centre_2_y
-        type2_arms_aligned = (
-            assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
-            /(link_length_4*link_length_2*link_length_2)
-        )
+        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
@@ -1021,12 +1081,19 @@ class KinType12XY(OffsetKinematics):
         assembly_sign = k.assembly_sign
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
-        link_length_4 = k.link_length_4
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
+        link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
+        link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
+        link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
+        link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
+        link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        radius_2 = k.radius_2
+        part_of_along_centres = k.part_of_along_centres
+        part_of_branch_w = k.part_of_branch_w
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_rear_x = k.part_of_pivot_rear_x
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -1044,33 +1111,32 @@ class KinType12XY(OffsetKinematics):
             centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod rear
-        pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
+        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
         sin_a2 = sin(a2)
-        # rod rear
-        pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2/link_length_3
+        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2/link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*link_length_2*link_length_2):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        one_by_normal_divisor = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(link_length_2 + radius_2 - between_centres)*(between_centres + link_length_2 + radius_2)
-            *(between_centres + link_length_2 - radius_2)*(between_centres + radius_2 - link_length_2)/normal_divisor
+            0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
+            *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
+            *one_by_normal_divisor
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*link_length_2*link_length_2):
+        if not (height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_divisor + (link_length_2 + radius_2)*(link_length_2 - radius_2))/normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
         foot_x = along_centres*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         flange_x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         flange_y = centre_1_y + foot_y + apart_2_x*rise
@@ -1082,15 +1148,14 @@ class KinType12XY(OffsetKinematics):
             span_upper_x = flange_x
             span_upper_y = flange_y
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        span_rear_x = -(flange_y if swap_xy else flange_x)*link_length_3/link_length_2  # rod rear
-        span_rear_y = -(flange_x if swap_xy else flange_y)*link_length_3/link_length_2  # rod rear
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
         branch_w = (
             (
-                link_length_1*link_length_2*cos_a1*cos_a2 + link_length_1*link_length_3*cos_a1*cos_a2
-                + link_length_1*link_length_2*sin_a1*sin_a2 + link_length_1*link_length_3*sin_a1*sin_a2
-                - link_length_2*span_rear_y*cos_a2 - link_length_2*span_rear_x*sin_a2
+                (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)*cos_a2
+                + (part_of_branch_w*sin_a1 - link_length_2*span_rear_x)*sin_a2
             )
-            /(link_length_2*link_length_4)
+            /link_length_2_times_link_length_4
         )
         return (branch_t, branch_w)
 

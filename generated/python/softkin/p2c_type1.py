@@ -20,9 +20,9 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 29 additions, 29 multiplications, 6 divisions, 2 square roots, 4 sines
-    inverse: 62 additions, 49 multiplications, 19 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 245 additions, 196 multiplications, 76 divisions, 16 square roots, 8 sines
+    forward: 25 additions, 21 multiplications, 6 divisions, 2 square roots, 4 sines
+    inverse: 50 additions, 40 multiplications, 14 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 197 additions, 160 multiplications, 56 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -86,6 +86,19 @@ class Constants(NamedTuple):
     mid_a2: float
     machine_scale: float
     assembly_sign: float
+    part_of_normal_divisor: float
+    twice_outer_arm: float
+    outer_arm_squared_times_rounding: float
+    tcp_displacement_minus_displacement: float
+    machine_scale_times_plane: float
+    inner_arm_times_shortest_link: float
+    twice_inner_arm: float
+    inner_arm_minus_outer_arm: float
+    inner_arm_plus_outer_arm: float
+    assembly_sign_by_outer_arm_squared: float
+    outer_arm_squared: float
+    machine_scale_squared_times_free_angle: float
+    part_of_slope_1_by_x: float
 
 
 class P2CType1(OffsetKinematics):
@@ -272,6 +285,19 @@ class P2CType1(OffsetKinematics):
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         machine_scale = displacement + inner_arm + outer_arm + tcp_displacement  # a length of the machine
         assembly_sign = 1.0 if tcp_above else -1.0  # assembly mode of this machine
+        part_of_normal_divisor = 1e-22*outer_arm*outer_arm
+        twice_outer_arm = 2.0*outer_arm
+        outer_arm_squared_times_rounding = 1e-12*outer_arm*outer_arm
+        tcp_displacement_minus_displacement = tcp_displacement - displacement
+        machine_scale_times_plane = 1e-6*machine_scale
+        inner_arm_times_shortest_link = 1e-9*inner_arm
+        twice_inner_arm = 2.0*inner_arm
+        inner_arm_minus_outer_arm = inner_arm - outer_arm
+        inner_arm_plus_outer_arm = inner_arm + outer_arm
+        assembly_sign_by_outer_arm_squared = assembly_sign/(outer_arm*outer_arm)
+        outer_arm_squared = outer_arm*outer_arm
+        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
+        part_of_slope_1_by_x = 2.0*tcp_displacement - 2.0*displacement
         return Constants(
             inner_arm=inner_arm, outer_arm=outer_arm, displacement=displacement, tcp_displacement=tcp_displacement,
             offset_a1=offset_a1, offset_a2=offset_a2, tcp_above=tcp_above, min_type2_margin=min_type2_margin,
@@ -279,7 +305,16 @@ class P2CType1(OffsetKinematics):
             unlimited_a1=unlimited_a1, lowest_a1=lowest_a1, highest_a1=highest_a1, single_a1=single_a1, mid_a1=mid_a1,
             lower_a2=effective_lower_a2, upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2,
             highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, machine_scale=machine_scale,
-            assembly_sign=assembly_sign,
+            assembly_sign=assembly_sign, part_of_normal_divisor=part_of_normal_divisor,
+            twice_outer_arm=twice_outer_arm, outer_arm_squared_times_rounding=outer_arm_squared_times_rounding,
+            tcp_displacement_minus_displacement=tcp_displacement_minus_displacement,
+            machine_scale_times_plane=machine_scale_times_plane,
+            inner_arm_times_shortest_link=inner_arm_times_shortest_link, twice_inner_arm=twice_inner_arm,
+            inner_arm_minus_outer_arm=inner_arm_minus_outer_arm, inner_arm_plus_outer_arm=inner_arm_plus_outer_arm,
+            assembly_sign_by_outer_arm_squared=assembly_sign_by_outer_arm_squared,
+            outer_arm_squared=outer_arm_squared,
+            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
+            part_of_slope_1_by_x=part_of_slope_1_by_x,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -287,21 +322,23 @@ class P2CType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         assembly_sign = k.assembly_sign
-        displacement = k.displacement
         inner_arm = k.inner_arm
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         outer_arm = k.outer_arm
-        tcp_displacement = k.tcp_displacement
+        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
+        part_of_normal_divisor = k.part_of_normal_divisor
+        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
+        twice_outer_arm = k.twice_outer_arm
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
         sin_a1 = sin(a1)
         pivot_1_y = -inner_arm*sin_a1  # rod 1
@@ -310,26 +347,25 @@ class P2CType1(OffsetKinematics):
         apart_2_y = pivot_2_y - pivot_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*outer_arm*outer_arm):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*outer_arm*outer_arm else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            0.25*(2.0*outer_arm - between_centres)*(between_centres + 2.0*outer_arm)*between_centres*between_centres
-            /normal_divisor
+            0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
+            *between_centres/normal_square
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*outer_arm*outer_arm):
+        if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
         foot_x = 0.5*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square/normal_square)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
         foot_y = 0.5*apart_2_y
         y = foot_y + pivot_1_y + apart_2_x*rise
-        span_1_x = displacement + x - tcp_displacement  # rod 1
+        span_1_x = x - tcp_displacement_minus_displacement  # rod 1
         branch_knee_1 = (span_1_x*sin_a1 - y*cos_a1)/outer_arm
-        span_2_x = tcp_displacement + x - displacement  # rod 2
+        span_2_x = tcp_displacement_minus_displacement + x  # rod 2
         branch_knee_2 = (-y*cos_a2 - span_2_x*sin_a2)/outer_arm
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_knee_1, branch_knee_2))
 
@@ -337,21 +373,22 @@ class P2CType1(OffsetKinematics):
         """The rotation of the frame."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        displacement = k.displacement
         inner_arm = k.inner_arm
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        outer_arm = k.outer_arm
-        tcp_displacement = k.tcp_displacement
+        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
+        part_of_normal_divisor = k.part_of_normal_divisor
+        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
+        twice_outer_arm = k.twice_outer_arm
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
         sin_a1 = sin(a1)
         pivot_1_y = -inner_arm*sin_a1  # rod 1
@@ -360,17 +397,16 @@ class P2CType1(OffsetKinematics):
         apart_2_y = pivot_2_y - pivot_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*outer_arm*outer_arm):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*outer_arm*outer_arm else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            0.25*(2.0*outer_arm - between_centres)*(between_centres + 2.0*outer_arm)*between_centres*between_centres
-            /normal_divisor
+            0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
+            *between_centres/normal_square
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*outer_arm*outer_arm):
+        if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -383,19 +419,21 @@ class P2CType1(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        assembly_sign = k.assembly_sign
-        displacement = k.displacement
+        assembly_sign_by_outer_arm_squared = k.assembly_sign_by_outer_arm_squared
         inner_arm = k.inner_arm
-        machine_scale = k.machine_scale
+        inner_arm_minus_outer_arm = k.inner_arm_minus_outer_arm
+        inner_arm_plus_outer_arm = k.inner_arm_plus_outer_arm
+        inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        outer_arm = k.outer_arm
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        tcp_displacement = k.tcp_displacement
+        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
+        twice_inner_arm = k.twice_inner_arm
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -403,70 +441,69 @@ class P2CType1(OffsetKinematics):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(z) <= 1e-6*machine_scale):
-            missing = abs(z) - 1e-6*machine_scale
+        if not (abs(z) <= machine_scale_times_plane):
+            missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        span_1_x = displacement + x - tcp_displacement  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
+        span_1_x = x - tcp_displacement_minus_displacement  # rod 1
+        y_squared = y*y
+        effective_a1 = root(y_squared + span_1_x*span_1_x)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*inner_arm):
+        if not (effective_a1 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = effective_a1*twice_inner_arm  # a1: law of cosines in the rod 1 equation
         # 1 - cosine, times the scale
-        one_less_cos_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
+        one_less_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm)*(effective_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
+        one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1)*(effective_a1 - inner_arm_minus_outer_arm)
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             missing = (
-                0.5*abs(inner_arm + outer_arm - divisor_a1) + 0.5*abs(divisor_a1 + outer_arm - inner_arm)
-                + 0.5*abs(divisor_a1 + inner_arm - outer_arm) + 0.5*abs(divisor_a1 + inner_arm + outer_arm) - divisor_a1
-                - inner_arm - outer_arm
+                0.5*abs(effective_a1 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_minus_outer_arm)
+                + 0.5*abs(effective_a1 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_plus_outer_arm)
+                - effective_a1 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = tcp_displacement + x - displacement  # rod 2
-        effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
+        span_2_x = tcp_displacement_minus_displacement + x  # rod 2
+        effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*inner_arm):
+        if not (effective_a2 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = effective_a2*twice_inner_arm  # a2: law of cosines in the rod 2 equation
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2)*(effective_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
+        one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)*(effective_a2 + inner_arm_plus_outer_arm)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             missing = (
-                0.5*abs(inner_arm + outer_arm - divisor_a2) + 0.5*abs(divisor_a2 + outer_arm - inner_arm)
-                + 0.5*abs(divisor_a2 + inner_arm - outer_arm) + 0.5*abs(divisor_a2 + inner_arm + outer_arm) - divisor_a2
-                - inner_arm - outer_arm
+                0.5*abs(effective_a2 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_minus_outer_arm)
+                + 0.5*abs(effective_a2 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_plus_outer_arm)
+                - effective_a2 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
-        cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
-        pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
+        cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/effective_a1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
-        sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
+        sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
-        cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2/divisor_a2
-        pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
+        cos_a2 = (span_2_x*cos_swing_a2 + y*sin_swing_a2)/effective_a2
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
         rod_2_x = x - pivot_2_x
-        sin_a2 = span_2_x*sin_swing_a2/divisor_a2 - y*cos_swing_a2/divisor_a2
+        sin_a2 = (span_2_x*sin_swing_a2 - y*cos_swing_a2)/effective_a2
         pivot_2_y = -inner_arm*sin_a2  # rod 2
         rod_2_y = y - pivot_2_y
-        type2_arms_aligned = assembly_sign*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(outer_arm*outer_arm)
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
@@ -522,21 +559,24 @@ class P2CType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         assembly_sign = k.assembly_sign
-        displacement = k.displacement
         inner_arm = k.inner_arm
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         outer_arm = k.outer_arm
-        tcp_displacement = k.tcp_displacement
+        outer_arm_squared = k.outer_arm_squared
+        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
+        part_of_normal_divisor = k.part_of_normal_divisor
+        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
+        twice_outer_arm = k.twice_outer_arm
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
         sin_a1 = sin(a1)
         pivot_1_y = -inner_arm*sin_a1  # rod 1
@@ -545,32 +585,31 @@ class P2CType1(OffsetKinematics):
         apart_2_y = pivot_2_y - pivot_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*outer_arm*outer_arm):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*outer_arm*outer_arm else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            0.25*(2.0*outer_arm - between_centres)*(between_centres + 2.0*outer_arm)*between_centres*between_centres
-            /normal_divisor
+            0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
+            *between_centres/normal_square
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*outer_arm*outer_arm):
+        if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
         foot_y = 0.5*apart_2_y
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square/normal_square)*assembly_sign
         y = foot_y + pivot_1_y + apart_2_x*rise
         foot_x = 0.5*apart_2_x
         x = foot_x + pivot_1_x - apart_2_y*rise
-        span_1_x = displacement + x - tcp_displacement  # rod 1
+        span_1_x = x - tcp_displacement_minus_displacement  # rod 1
         margin_stretched_1 = (span_1_x*sin_a1 - y*cos_a1)/outer_arm
-        span_2_x = tcp_displacement + x - displacement  # rod 2
+        span_2_x = tcp_displacement_minus_displacement + x  # rod 2
         margin_stretched_2 = (-y*cos_a2 - span_2_x*sin_a2)/outer_arm
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        margin_arms_aligned = (rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(outer_arm*outer_arm)
+        margin_arms_aligned = (rod_1_x*rod_2_y - rod_1_y*rod_2_x)/outer_arm_squared
         return (margin_stretched_1, margin_stretched_2, margin_arms_aligned)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -578,22 +617,25 @@ class P2CType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         assembly_sign = k.assembly_sign
-        displacement = k.displacement
         inner_arm = k.inner_arm
-        machine_scale = k.machine_scale
+        machine_scale_squared_times_free_angle = k.machine_scale_squared_times_free_angle
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        outer_arm = k.outer_arm
-        tcp_displacement = k.tcp_displacement
+        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_slope_1_by_x = k.part_of_slope_1_by_x
+        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
+        twice_inner_arm = k.twice_inner_arm
+        twice_outer_arm = k.twice_outer_arm
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
         sin_a1 = sin(a1)
         pivot_1_y = -inner_arm*sin_a1  # rod 1
@@ -602,44 +644,40 @@ class P2CType1(OffsetKinematics):
         apart_2_y = pivot_2_y - pivot_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*outer_arm*outer_arm):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*outer_arm*outer_arm else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            0.25*(2.0*outer_arm - between_centres)*(between_centres + 2.0*outer_arm)*between_centres*between_centres
-            /normal_divisor
+            0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
+            *between_centres/normal_square
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*outer_arm*outer_arm):
+        if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
         foot_x = 0.5*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square/normal_square)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
-        slope_1_by_x = 2.0*displacement + 2.0*x + 2.0*inner_arm*cos_a1 - 2.0*tcp_displacement
+        twice_x = -2.0*x
+        slope_1_by_x = twice_inner_arm*cos_a1 - part_of_slope_1_by_x - twice_x
         foot_y = 0.5*apart_2_y
         y = foot_y + pivot_1_y + apart_2_x*rise
-        slope_1_by_y = 2.0*y + 2.0*inner_arm*sin_a1
-        slope_2_by_x = 2.0*tcp_displacement + 2.0*x - 2.0*displacement - 2.0*inner_arm*cos_a2
-        slope_2_by_y = 2.0*y + 2.0*inner_arm*sin_a2
+        twice_y = -2.0*y
+        slope_1_by_y = twice_inner_arm*sin_a1 - twice_y
+        slope_2_by_x = part_of_slope_1_by_x - twice_x - twice_inner_arm*cos_a2
+        slope_2_by_y = twice_inner_arm*sin_a2 - twice_y
         # of the closure by the position: zero in a type 2 singularity
         determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x
         # nothing controls the plate
-        if not (abs(determinant) > 1e-11*machine_scale*machine_scale):
+        if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
-        slope_1_by_a1 = (
-            2.0*inner_arm*(y + inner_arm*sin_a1)*cos_a1
-            - 2.0*inner_arm*(displacement + x + inner_arm*cos_a1 - tcp_displacement)*sin_a1
-        )
-        determinant_divisor = determinant if abs(determinant) > 1e-11*machine_scale*machine_scale else 1.0
-        slope_2_by_a2 = (
-            2.0*inner_arm*(y + inner_arm*sin_a2)*cos_a2
-            + 2.0*(tcp_displacement + x - displacement - inner_arm*cos_a2)*inner_arm*sin_a2
-        )
+        slope_1_by_a1 = twice_inner_arm*((y - pivot_1_y)*cos_a1 + (pivot_1_x - x)*sin_a1)
+        slope_1_by_a1_by_determinant_divisor = slope_1_by_a1/determinant
+        slope_2_by_a2 = twice_inner_arm*((y - pivot_2_y)*cos_a2 - (pivot_2_x - x)*sin_a2)
+        slope_2_by_a2_by_determinant_divisor = slope_2_by_a2/determinant
         return (
-            (-slope_1_by_a1*slope_2_by_y/determinant_divisor, slope_1_by_y*slope_2_by_a2/determinant_divisor),
-            (slope_1_by_a1*slope_2_by_x/determinant_divisor, -slope_1_by_x*slope_2_by_a2/determinant_divisor),
+            (-slope_1_by_a1_by_determinant_divisor*slope_2_by_y, slope_1_by_y*slope_2_by_a2_by_determinant_divisor),
+            (slope_1_by_a1_by_determinant_divisor*slope_2_by_x, -slope_1_by_x*slope_2_by_a2_by_determinant_divisor),
         )
 
     def _image(self) -> Image | Status:
@@ -656,19 +694,21 @@ class P2CType1(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        assembly_sign = k.assembly_sign
-        displacement = k.displacement
+        assembly_sign_by_outer_arm_squared = k.assembly_sign_by_outer_arm_squared
         inner_arm = k.inner_arm
-        machine_scale = k.machine_scale
+        inner_arm_minus_outer_arm = k.inner_arm_minus_outer_arm
+        inner_arm_plus_outer_arm = k.inner_arm_plus_outer_arm
+        inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        outer_arm = k.outer_arm
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        tcp_displacement = k.tcp_displacement
+        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
+        twice_inner_arm = k.twice_inner_arm
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -676,72 +716,71 @@ class P2CType1(OffsetKinematics):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(point_z - z) <= 1e-6*machine_scale):
-            missing = abs(point_z - z) - 1e-6*machine_scale
+        if not (abs(point_z - z) <= machine_scale_times_plane):
+            missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        flange_y = y - point_y  # the flange behind the point
         flange_x = x - point_x  # the flange behind the point
-        span_1_x = displacement + flange_x - tcp_displacement  # rod 1
-        effective_a1 = sqrt(flange_y*flange_y + span_1_x*span_1_x)  # effective length that the angle turns
+        span_1_x = flange_x - tcp_displacement_minus_displacement  # rod 1
+        flange_y = y - point_y  # the flange behind the point
+        flange_y_squared = flange_y*flange_y
+        effective_a1 = root(flange_y_squared + span_1_x*span_1_x)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*inner_arm):
+        if not (effective_a1 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = effective_a1*twice_inner_arm  # a1: law of cosines in the rod 1 equation
         # 1 - cosine, times the scale
-        one_less_cos_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
+        one_less_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm)*(effective_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
+        one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1)*(effective_a1 - inner_arm_minus_outer_arm)
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             missing = (
-                0.5*abs(inner_arm + outer_arm - divisor_a1) + 0.5*abs(divisor_a1 + outer_arm - inner_arm)
-                + 0.5*abs(divisor_a1 + inner_arm - outer_arm) + 0.5*abs(divisor_a1 + inner_arm + outer_arm) - divisor_a1
-                - inner_arm - outer_arm
+                0.5*abs(effective_a1 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_minus_outer_arm)
+                + 0.5*abs(effective_a1 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_plus_outer_arm)
+                - effective_a1 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = flange_x + tcp_displacement - displacement  # rod 2
-        effective_a2 = sqrt(flange_y*flange_y + span_2_x*span_2_x)  # effective length that the angle turns
+        span_2_x = flange_x + tcp_displacement_minus_displacement  # rod 2
+        effective_a2 = root(flange_y_squared + span_2_x*span_2_x)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*inner_arm):
+        if not (effective_a2 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = effective_a2*twice_inner_arm  # a2: law of cosines in the rod 2 equation
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2)*(effective_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
+        one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)*(effective_a2 + inner_arm_plus_outer_arm)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             missing = (
-                0.5*abs(inner_arm + outer_arm - divisor_a2) + 0.5*abs(divisor_a2 + outer_arm - inner_arm)
-                + 0.5*abs(divisor_a2 + inner_arm - outer_arm) + 0.5*abs(divisor_a2 + inner_arm + outer_arm) - divisor_a2
-                - inner_arm - outer_arm
+                0.5*abs(effective_a2 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_minus_outer_arm)
+                + 0.5*abs(effective_a2 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_plus_outer_arm)
+                - effective_a2 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
-        cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - flange_y*sin_swing_a1/divisor_a1
-        pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
+        cos_a1 = (span_1_x*cos_swing_a1 - flange_y*sin_swing_a1)/effective_a1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
         rod_1_x = flange_x - pivot_1_x
-        sin_a1 = flange_y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
+        sin_a1 = (flange_y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = flange_y - pivot_1_y
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
-        cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + flange_y*sin_swing_a2/divisor_a2
-        pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
+        cos_a2 = (span_2_x*cos_swing_a2 + flange_y*sin_swing_a2)/effective_a2
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
         rod_2_x = flange_x - pivot_2_x
-        sin_a2 = span_2_x*sin_swing_a2/divisor_a2 - flange_y*cos_swing_a2/divisor_a2
+        sin_a2 = (span_2_x*sin_swing_a2 - flange_y*cos_swing_a2)/effective_a2
         pivot_2_y = -inner_arm*sin_a2  # rod 2
         rod_2_y = flange_y - pivot_2_y
-        type2_arms_aligned = assembly_sign*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(outer_arm*outer_arm)
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
@@ -765,21 +804,23 @@ class P2CType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         assembly_sign = k.assembly_sign
-        displacement = k.displacement
         inner_arm = k.inner_arm
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         outer_arm = k.outer_arm
-        tcp_displacement = k.tcp_displacement
+        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
+        part_of_normal_divisor = k.part_of_normal_divisor
+        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
+        twice_outer_arm = k.twice_outer_arm
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
         sin_a1 = sin(a1)
         pivot_1_y = -inner_arm*sin_a1  # rod 1
@@ -788,26 +829,25 @@ class P2CType1(OffsetKinematics):
         apart_2_y = pivot_2_y - pivot_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*outer_arm*outer_arm):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*outer_arm*outer_arm else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            0.25*(2.0*outer_arm - between_centres)*(between_centres + 2.0*outer_arm)*between_centres*between_centres
-            /normal_divisor
+            0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
+            *between_centres/normal_square
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*outer_arm*outer_arm):
+        if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
         foot_y = 0.5*apart_2_y
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square/normal_square)*assembly_sign
         flange_y = foot_y + pivot_1_y + apart_2_x*rise
         foot_x = 0.5*apart_2_x
         flange_x = foot_x + pivot_1_x - apart_2_y*rise
-        span_1_x = displacement + flange_x - tcp_displacement  # rod 1
+        span_1_x = flange_x - tcp_displacement_minus_displacement  # rod 1
         branch_knee_1 = (span_1_x*sin_a1 - flange_y*cos_a1)/outer_arm
-        span_2_x = flange_x + tcp_displacement - displacement  # rod 2
+        span_2_x = flange_x + tcp_displacement_minus_displacement  # rod 2
         branch_knee_2 = (-flange_y*cos_a2 - span_2_x*sin_a2)/outer_arm
         return (branch_knee_1, branch_knee_2)
 

@@ -18,9 +18,9 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 25 additions, 19 multiplications, 5 divisions, 2 square roots, 0 sines
-    inverse: 26 additions, 15 multiplications, 1 divisions, 2 square roots, 0 sines
-    inverse, all 4 branches open: 101 additions, 60 multiplications, 4 divisions, 8 square roots, 0 sines
+    forward: 19 additions, 14 multiplications, 3 divisions, 2 square roots, 0 sines
+    inverse: 24 additions, 9 multiplications, 0 divisions, 2 square roots, 0 sines
+    inverse, all 4 branches open: 93 additions, 36 multiplications, 0 divisions, 8 square roots, 0 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -84,6 +84,17 @@ class Constants(NamedTuple):
     tie: float
     apart_2_y: float
     assembly_sign: float
+    apart_2_y_squared: float
+    part_of_normal_divisor: float
+    arm_length_1_squared_times_rounding: float
+    arm_length_1_plus_arm_length_2: float
+    arm_length_1_minus_arm_length_2: float
+    part_of_along_centres: float
+    machine_scale_times_plane: float
+    arm_length_2_squared_times_rounding: float
+    part_of_type2_arms_aligned: float
+    arm_length_1_times_arm_length_2: float
+    machine_scale_squared_times_free_angle: float
 
 
 class P2XType1(OffsetKinematics):
@@ -276,6 +287,17 @@ class P2XType1(OffsetKinematics):
         tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
         apart_2_y = rail_y_2 - rail_y_1
         assembly_sign = 1.0 if tcp_above else -1.0  # assembly mode of this machine
+        apart_2_y_squared = apart_2_y*apart_2_y
+        part_of_normal_divisor = 1e-22*arm_length_1*arm_length_1
+        arm_length_1_squared_times_rounding = 1e-12*arm_length_1*arm_length_1
+        arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
+        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
+        part_of_along_centres = arm_length_1_minus_arm_length_2*arm_length_1_plus_arm_length_2
+        machine_scale_times_plane = 1e-6*machine_scale
+        arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
+        part_of_type2_arms_aligned = assembly_sign/(arm_length_1*arm_length_2)
+        arm_length_1_times_arm_length_2 = arm_length_1*arm_length_2
+        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
         return Constants(
             arm_length_1=arm_length_1, arm_length_2=arm_length_2, rail_y_1=rail_y_1, rail_y_2=rail_y_2,
             tcp_offset_1=tcp_offset_1, tcp_offset_2=tcp_offset_2, offset_a1=offset_a1, offset_a2=offset_a2,
@@ -283,7 +305,16 @@ class P2XType1(OffsetKinematics):
             lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
             highest_a1=highest_a1, lower_a2=effective_lower_a2, upper_a2=effective_upper_a2,
             unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2, machine_scale=machine_scale,
-            tie=tie, apart_2_y=apart_2_y, assembly_sign=assembly_sign,
+            tie=tie, apart_2_y=apart_2_y, assembly_sign=assembly_sign, apart_2_y_squared=apart_2_y_squared,
+            part_of_normal_divisor=part_of_normal_divisor,
+            arm_length_1_squared_times_rounding=arm_length_1_squared_times_rounding,
+            arm_length_1_plus_arm_length_2=arm_length_1_plus_arm_length_2,
+            arm_length_1_minus_arm_length_2=arm_length_1_minus_arm_length_2,
+            part_of_along_centres=part_of_along_centres, machine_scale_times_plane=machine_scale_times_plane,
+            arm_length_2_squared_times_rounding=arm_length_2_squared_times_rounding,
+            part_of_type2_arms_aligned=part_of_type2_arms_aligned,
+            arm_length_1_times_arm_length_2=arm_length_1_times_arm_length_2,
+            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -291,11 +322,17 @@ class P2XType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         apart_2_y = k.apart_2_y
+        apart_2_y_squared = k.apart_2_y_squared
         arm_length_1 = k.arm_length_1
+        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
+        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        part_of_along_centres = k.part_of_along_centres
+        part_of_normal_divisor = k.part_of_normal_divisor
         rail_y_1 = k.rail_y_1
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
@@ -307,27 +344,25 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1 else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        one_by_normal_divisor = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(arm_length_2 + between_centres - arm_length_1)*(arm_length_1 + arm_length_2 + between_centres)
-            *(arm_length_1 + arm_length_2 - between_centres)*(arm_length_1 + between_centres - arm_length_2)
-            /normal_divisor
+            0.25*(between_centres - arm_length_1_plus_arm_length_2)
+            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
+            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_divisor
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length_1*arm_length_1):
+        if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = (
-            0.5*(normal_divisor + (arm_length_1 + arm_length_2)*(arm_length_1 - arm_length_2))/normal_divisor
-        )
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
         foot_x = along_centres*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = foot_y + rail_y_1 + apart_2_x*rise
@@ -345,11 +380,13 @@ class P2XType1(OffsetKinematics):
         """The rotation of the frame."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        apart_2_y = k.apart_2_y
-        arm_length_1 = k.arm_length_1
-        arm_length_2 = k.arm_length_2
+        apart_2_y_squared = k.apart_2_y_squared
+        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
+        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        part_of_normal_divisor = k.part_of_normal_divisor
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
         # numbers of reasonable size
@@ -360,20 +397,19 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1 else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            0.25*(arm_length_2 + between_centres - arm_length_1)*(arm_length_1 + arm_length_2 + between_centres)
-            *(arm_length_1 + arm_length_2 - between_centres)*(arm_length_1 + between_centres - arm_length_2)
-            /normal_divisor
+            0.25*(between_centres - arm_length_1_plus_arm_length_2)
+            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
+            *(arm_length_1_plus_arm_length_2 + between_centres)/normal_square
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length_1*arm_length_1):
+        if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -385,12 +421,14 @@ class P2XType1(OffsetKinematics):
         sigma_carriage_1, sigma_carriage_2 = signs
         k = self._constants
         arm_length_1 = k.arm_length_1
+        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
         arm_length_2 = k.arm_length_2
-        assembly_sign = k.assembly_sign
-        machine_scale = k.machine_scale
+        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
+        machine_scale_times_plane = k.machine_scale_times_plane
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
         rail_y_1 = k.rail_y_1
         rail_y_2 = k.rail_y_2
         tcp_offset_1 = k.tcp_offset_1
@@ -399,32 +437,30 @@ class P2XType1(OffsetKinematics):
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(z) <= 1e-6*machine_scale):
-            missing = abs(z) - 1e-6*machine_scale
+        if not (abs(z) <= machine_scale_times_plane):
+            missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         span_1_y = y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length_1*arm_length_1):
-            missing = 0.5*abs(arm_length_1 - span_1_y) + 0.5*abs(arm_length_1 + span_1_y) - arm_length_1
+        if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
+            missing = 0.5*(abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_y = y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length_2*arm_length_2):
-            missing = 0.5*abs(arm_length_2 - span_2_y) + 0.5*abs(arm_length_2 + span_2_y) - arm_length_2
+        if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
+            missing = 0.5*(abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_1_x = x - tcp_offset_1  # rod 1
         a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
         pivot_1_x = a1 + tcp_offset_1  # rod 1
         rod_1_x = x - pivot_1_x
-        rod_1_y = y - rail_y_1
         span_2_x = tcp_offset_2 + x  # rod 2
         a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         rod_2_x = x - pivot_2_x
-        rod_2_y = y - rail_y_2
-        type2_arms_aligned = assembly_sign*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(arm_length_1*arm_length_2)
+        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
@@ -464,11 +500,18 @@ class P2XType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         apart_2_y = k.apart_2_y
+        apart_2_y_squared = k.apart_2_y_squared
         arm_length_1 = k.arm_length_1
+        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
+        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
+        arm_length_1_times_arm_length_2 = k.arm_length_1_times_arm_length_2
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        part_of_along_centres = k.part_of_along_centres
+        part_of_normal_divisor = k.part_of_normal_divisor
         rail_y_1 = k.rail_y_1
         rail_y_2 = k.rail_y_2
         tcp_offset_1 = k.tcp_offset_1
@@ -481,27 +524,25 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1 else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        one_by_normal_divisor = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(arm_length_2 + between_centres - arm_length_1)*(arm_length_1 + arm_length_2 + between_centres)
-            *(arm_length_1 + arm_length_2 - between_centres)*(arm_length_1 + between_centres - arm_length_2)
-            /normal_divisor
+            0.25*(between_centres - arm_length_1_plus_arm_length_2)
+            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
+            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_divisor
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length_1*arm_length_1):
+        if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = (
-            0.5*(normal_divisor + (arm_length_1 + arm_length_2)*(arm_length_1 - arm_length_2))/normal_divisor
-        )
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
         foot_x = along_centres*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
         span_1_x = x - tcp_offset_1  # rod 1
         margin_upright_1 = (span_1_x - a1)/arm_length_1
@@ -513,7 +554,7 @@ class P2XType1(OffsetKinematics):
         rod_1_y = y - rail_y_1
         rod_2_x = x - pivot_2_x
         rod_2_y = y - rail_y_2
-        margin_arms_aligned = (rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(arm_length_1*arm_length_2)
+        margin_arms_aligned = (rod_1_x*rod_2_y - rod_1_y*rod_2_x)/arm_length_1_times_arm_length_2
         return (margin_upright_1, margin_upright_2, margin_arms_aligned)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -521,12 +562,16 @@ class P2XType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         apart_2_y = k.apart_2_y
-        arm_length_1 = k.arm_length_1
-        arm_length_2 = k.arm_length_2
+        apart_2_y_squared = k.apart_2_y_squared
+        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
+        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
         assembly_sign = k.assembly_sign
-        machine_scale = k.machine_scale
+        machine_scale_squared_times_free_angle = k.machine_scale_squared_times_free_angle
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        part_of_along_centres = k.part_of_along_centres
+        part_of_normal_divisor = k.part_of_normal_divisor
         rail_y_1 = k.rail_y_1
         rail_y_2 = k.rail_y_2
         tcp_offset_1 = k.tcp_offset_1
@@ -539,45 +584,47 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1 else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        one_by_normal_divisor = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(arm_length_2 + between_centres - arm_length_1)*(arm_length_1 + arm_length_2 + between_centres)
-            *(arm_length_1 + arm_length_2 - between_centres)*(arm_length_1 + between_centres - arm_length_2)
-            /normal_divisor
+            0.25*(between_centres - arm_length_1_plus_arm_length_2)
+            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
+            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_divisor
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length_1*arm_length_1):
+        if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         # foot of the height, as a share
-        along_centres = (
-            0.5*(normal_divisor + (arm_length_1 + arm_length_2)*(arm_length_1 - arm_length_2))/normal_divisor
-        )
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        slope_1_by_x = 2.0*x - 2.0*a1 - 2.0*tcp_offset_1
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
         foot_y = along_centres*apart_2_y
         y = foot_y + rail_y_1 + apart_2_x*rise
-        slope_1_by_y = 2.0*y - 2.0*rail_y_1
-        slope_2_by_x = 2.0*tcp_offset_2 + 2.0*x - 2.0*a2
-        slope_2_by_y = 2.0*y - 2.0*rail_y_2
+        slope_1_by_y = 2.0*(y - rail_y_1)
+        foot_x = along_centres*apart_2_x
+        x = foot_x + pivot_1_x - apart_2_y*rise
+        slope_2_by_x = 2.0*(x - pivot_2_x)
+        slope_1_by_y_times_slope_2_by_x = slope_1_by_y*slope_2_by_x
+        slope_1_by_x = 2.0*(x - pivot_1_x)
+        slope_2_by_y = 2.0*(y - rail_y_2)
+        slope_1_by_x_times_slope_2_by_y = -slope_1_by_x*slope_2_by_y
         # of the closure by the position: zero in a type 2 singularity
-        determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x
+        determinant = -slope_1_by_x_times_slope_2_by_y - slope_1_by_y_times_slope_2_by_x
         # nothing controls the plate
-        if not (abs(determinant) > 1e-11*machine_scale*machine_scale):
+        if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
-        slope_1_by_a1 = 2.0*a1 + 2.0*tcp_offset_1 - 2.0*x
-        determinant_divisor = determinant if abs(determinant) > 1e-11*machine_scale*machine_scale else 1.0
-        slope_2_by_a2 = 2.0*a2 - 2.0*tcp_offset_2 - 2.0*x
+        one_by_determinant_divisor = 1.0/determinant
+        part = one_by_determinant_divisor*slope_1_by_x*slope_2_by_x
         return (
-            (-slope_1_by_a1*slope_2_by_y/determinant_divisor, slope_1_by_y*slope_2_by_a2/determinant_divisor),
-            (slope_1_by_a1*slope_2_by_x/determinant_divisor, -slope_1_by_x*slope_2_by_a2/determinant_divisor),
+            (
+                -one_by_determinant_divisor*slope_1_by_x_times_slope_2_by_y,
+                -one_by_determinant_divisor*slope_1_by_y_times_slope_2_by_x,
+            ),
+            (-part, part),
         )
 
     def _image(self) -> Image | Status:
@@ -593,12 +640,14 @@ class P2XType1(OffsetKinematics):
         sigma_carriage_1, sigma_carriage_2 = signs
         k = self._constants
         arm_length_1 = k.arm_length_1
+        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
         arm_length_2 = k.arm_length_2
-        assembly_sign = k.assembly_sign
-        machine_scale = k.machine_scale
+        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
+        machine_scale_times_plane = k.machine_scale_times_plane
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
         rail_y_1 = k.rail_y_1
         rail_y_2 = k.rail_y_2
         tcp_offset_1 = k.tcp_offset_1
@@ -610,34 +659,32 @@ class P2XType1(OffsetKinematics):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(point_z - z) <= 1e-6*machine_scale):
-            missing = abs(point_z - z) - 1e-6*machine_scale
+        if not (abs(point_z - z) <= machine_scale_times_plane):
+            missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_y = y - point_y  # the flange behind the point
         span_1_y = flange_y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length_1*arm_length_1):
-            missing = 0.5*abs(arm_length_1 - span_1_y) + 0.5*abs(arm_length_1 + span_1_y) - arm_length_1
+        if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
+            missing = 0.5*(abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_y = flange_y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length_2*arm_length_2):
-            missing = 0.5*abs(arm_length_2 - span_2_y) + 0.5*abs(arm_length_2 + span_2_y) - arm_length_2
+        if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
+            missing = 0.5*(abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         flange_x = x - point_x  # the flange behind the point
         span_1_x = flange_x - tcp_offset_1  # rod 1
         a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
         pivot_1_x = a1 + tcp_offset_1  # rod 1
         rod_1_x = flange_x - pivot_1_x
-        rod_1_y = flange_y - rail_y_1
         span_2_x = flange_x + tcp_offset_2  # rod 2
         a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         rod_2_x = flange_x - pivot_2_x
-        rod_2_y = flange_y - rail_y_2
-        type2_arms_aligned = assembly_sign*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(arm_length_1*arm_length_2)
+        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
@@ -653,11 +700,17 @@ class P2XType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         apart_2_y = k.apart_2_y
+        apart_2_y_squared = k.apart_2_y_squared
         arm_length_1 = k.arm_length_1
+        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
+        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        part_of_along_centres = k.part_of_along_centres
+        part_of_normal_divisor = k.part_of_normal_divisor
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
         # numbers of reasonable size
@@ -668,27 +721,25 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1 else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        one_by_normal_divisor = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(arm_length_2 + between_centres - arm_length_1)*(arm_length_1 + arm_length_2 + between_centres)
-            *(arm_length_1 + arm_length_2 - between_centres)*(arm_length_1 + between_centres - arm_length_2)
-            /normal_divisor
+            0.25*(between_centres - arm_length_1_plus_arm_length_2)
+            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
+            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_divisor
         )
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length_1*arm_length_1):
+        if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = (
-            0.5*(normal_divisor + (arm_length_1 + arm_length_2)*(arm_length_1 - arm_length_2))/normal_divisor
-        )
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
         foot_x = along_centres*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         flange_x = foot_x + pivot_1_x - apart_2_y*rise
         span_1_x = flange_x - tcp_offset_1  # rod 1
         branch_carriage_1 = (span_1_x - a1)/arm_length_1

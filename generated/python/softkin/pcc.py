@@ -18,8 +18,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 13 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 42 additions, 27 multiplications, 9 divisions, 2 square roots, 4 sines
-    inverse, all 2 branches open: 80 additions, 52 multiplications, 17 divisions, 4 square roots, 8 sines
+    inverse: 38 additions, 22 multiplications, 9 divisions, 2 square roots, 4 sines
+    inverse, all 2 branches open: 72 additions, 42 multiplications, 17 divisions, 4 square roots, 8 sines
 
 Angles are right-handed about +Z.
 
@@ -86,6 +86,11 @@ class Constants(NamedTuple):
     highest_elbow: float
     machine_scale: float
     scale_a2_from_a1: float
+    machine_scale_times_plane: float
+    scale_a2_from_a1_squared_times_rounding: float
+    machine_scale_times_free_angle: float
+    link_length_1_plus_link_length_2: float
+    link_length_1_minus_link_length_2: float
 
 
 class PCC(OffsetKinematics):
@@ -265,6 +270,11 @@ class PCC(OffsetKinematics):
         highest_elbow = 1e12 if unlimited_elbow else effective_upper_elbow + tolerance_elbow
         machine_scale = link_length_1 + link_length_2  # a length of the machine
         scale_a2_from_a1 = 2.0*link_length_1*link_length_2  # a2_from_a1: law of cosines in the x² + y² equation
+        machine_scale_times_plane = 1e-6*machine_scale
+        scale_a2_from_a1_squared_times_rounding = 1e-12*scale_a2_from_a1*scale_a2_from_a1
+        machine_scale_times_free_angle = 1e-11*machine_scale
+        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, offset_a1=offset_a1, offset_a2=offset_a2,
             check_limits=check_limits, lower_a1=effective_lower_a1, upper_a1=effective_upper_a1,
@@ -273,6 +283,11 @@ class PCC(OffsetKinematics):
             highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, lower_elbow=effective_lower_elbow,
             upper_elbow=effective_upper_elbow, unlimited_elbow=unlimited_elbow, lowest_elbow=lowest_elbow,
             highest_elbow=highest_elbow, machine_scale=machine_scale, scale_a2_from_a1=scale_a2_from_a1,
+            machine_scale_times_plane=machine_scale_times_plane,
+            scale_a2_from_a1_squared_times_rounding=scale_a2_from_a1_squared_times_rounding,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
+            link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -315,13 +330,16 @@ class PCC(OffsetKinematics):
         ref_a1, ref_a2 = reference
         k = self._constants
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        scale_a2_from_a1 = k.scale_a2_from_a1
+        scale_a2_from_a1_squared_times_rounding = k.scale_a2_from_a1_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         # numbers of reasonable size
@@ -331,21 +349,27 @@ class PCC(OffsetKinematics):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(z) <= 1e-6*machine_scale):
-            missing = abs(z) - 1e-6*machine_scale
+        if not (abs(z) <= machine_scale_times_plane):
+            missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
-        one_less_cos_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a2_from_a1 = (
+            (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a2_from_a1 = (
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        )
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
+        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
             missing = (
-                0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
-                + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
-                - link_length_1 - link_length_2 - reach
+                0.5*(
+                    abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
+                    + abs(link_length_1_plus_link_length_2 - reach) + abs(link_length_1_plus_link_length_2 + reach)
+                )
+                - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # twice the scale, with the rounding of its parts
@@ -356,7 +380,7 @@ class PCC(OffsetKinematics):
             2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
         )
         # a1: linear pair in the x and y equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1 = link_length_2*sin_a2_from_a1
             direction_x_a1 = arm_across_a1*y + arm_along_a1*x
@@ -521,13 +545,16 @@ class PCC(OffsetKinematics):
         ref_a1, ref_a2 = reference
         k = self._constants
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        scale_a2_from_a1 = k.scale_a2_from_a1
+        scale_a2_from_a1_squared_times_rounding = k.scale_a2_from_a1_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         # numbers of reasonable size
@@ -537,23 +564,29 @@ class PCC(OffsetKinematics):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(point_z - z) <= 1e-6*machine_scale):
-            missing = abs(point_z - z) - 1e-6*machine_scale
+        if not (abs(point_z - z) <= machine_scale_times_plane):
+            missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_x = x - point_x  # the flange behind the point
         flange_y = y - point_y  # the flange behind the point
         reach = sqrt(flange_x*flange_x + flange_y*flange_y)
         # 1 - cosine, times the scale
-        one_less_cos_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a2_from_a1 = (
+            (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a2_from_a1 = (
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        )
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
+        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
             missing = (
-                0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
-                + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
-                - link_length_1 - link_length_2 - reach
+                0.5*(
+                    abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
+                    + abs(link_length_1_plus_link_length_2 - reach) + abs(link_length_1_plus_link_length_2 + reach)
+                )
+                - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # twice the scale, with the rounding of its parts
@@ -564,7 +597,7 @@ class PCC(OffsetKinematics):
             2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
         )
         # a1: linear pair in the x and y equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1 = link_length_2*sin_a2_from_a1
             direction_x_a1 = arm_across_a1*flange_y + arm_along_a1*flange_x

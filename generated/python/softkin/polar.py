@@ -15,8 +15,8 @@ Singularities:
     length that a distance from there could be compared with
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 8 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 12 additions, 8 multiplications, 3 divisions, 1 square roots, 3 sines
+    forward: 6 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
+    inverse: 12 additions, 5 multiplications, 3 divisions, 1 square roots, 3 sines
 
 As CODESYS's own block it has no orientation mode "Axis": a point beside the arm has two radii.
 
@@ -74,6 +74,8 @@ class Constants(NamedTuple):
     lowest_r: float
     highest_r: float
     machine_scale: float
+    machine_scale_times_plane: float
+    machine_scale_times_free_angle: float
 
 
 class Polar(Mechanism):
@@ -192,11 +194,15 @@ class Polar(Mechanism):
         lowest_r = -1e12 if unlimited_r else effective_lower_r - tolerance_r
         highest_r = 1e12 if unlimited_r else effective_upper_r + tolerance_r
         machine_scale = 1.0  # a length of the machine
+        machine_scale_times_plane = 1e-6*machine_scale
+        machine_scale_times_free_angle = 1e-11*machine_scale
         return Constants(
             offset_c=offset_c, offset_r=offset_r, check_limits=check_limits, lower_c=effective_lower_c,
             upper_c=effective_upper_c, unlimited_c=unlimited_c, lowest_c=lowest_c, highest_c=highest_c,
             single_c=single_c, mid_c=mid_c, lower_r=effective_lower_r, upper_r=effective_upper_r,
             unlimited_r=unlimited_r, lowest_r=lowest_r, highest_r=highest_r, machine_scale=machine_scale,
+            machine_scale_times_plane=machine_scale_times_plane,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -208,10 +214,10 @@ class Polar(Mechanism):
         # numbers of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
             return Status.BAD_INPUT
-        # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
-            return Status.IMPOSSIBLE
         r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
         x = r*cos_c
@@ -228,8 +234,9 @@ class Polar(Mechanism):
         # numbers of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
             return Status.BAD_INPUT
+        axis_r_minus_offset_r = axis_r - offset_r
         # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
+        if not (axis_r_minus_offset_r >= -1e-9 and axis_r_minus_offset_r <= 1000000001.0):
             return Status.IMPOSSIBLE
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
@@ -244,7 +251,8 @@ class Polar(Mechanism):
         (turn_c,) = turns
         ref_c, _ = reference
         k = self._constants
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_c = k.mid_c
         offset_c = k.offset_c
         offset_r = k.offset_r
@@ -253,12 +261,12 @@ class Polar(Mechanism):
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(z) <= 1e-6*machine_scale):
-            missing = abs(z) - 1e-6*machine_scale
+        if not (abs(z) <= machine_scale_times_plane):
+            missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
-        if radius_c > 1e-11*machine_scale:
+        if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y
         else:
@@ -311,10 +319,10 @@ class Polar(Mechanism):
         # numbers of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
             return Status.BAD_INPUT
-        # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
-            return Status.IMPOSSIBLE
         r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
         x = r*cos_c
@@ -334,10 +342,10 @@ class Polar(Mechanism):
         # numbers of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
             return Status.BAD_INPUT
-        # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
-            return Status.IMPOSSIBLE
         r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
         c = DEGREE*(axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)
@@ -356,10 +364,10 @@ class Polar(Mechanism):
         # numbers of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
             return Status.BAD_INPUT
-        # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
-            return Status.IMPOSSIBLE
         r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
         c = DEGREE*(axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)

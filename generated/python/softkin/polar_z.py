@@ -16,8 +16,8 @@ Singularities:
     length that a distance from there could be compared with
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 9 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 13 additions, 7 multiplications, 3 divisions, 1 square roots, 3 sines
+    forward: 7 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
+    inverse: 13 additions, 5 multiplications, 3 divisions, 1 square roots, 3 sines
 
 As CODESYS's own block it has no orientation mode "Axis": a point beside the arm has two radii.
 
@@ -81,6 +81,7 @@ class Constants(NamedTuple):
     lowest_z: float
     highest_z: float
     machine_scale: float
+    machine_scale_times_free_angle: float
 
 
 class PolarZ(Mechanism):
@@ -234,13 +235,14 @@ class PolarZ(Mechanism):
         lowest_z = -1e12 if unlimited_z else effective_lower_z - tolerance_z
         highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
         machine_scale = 1.0  # a length of the machine
+        machine_scale_times_free_angle = 1e-11*machine_scale
         return Constants(
             offset_c=offset_c, offset_r=offset_r, offset_z=offset_z, check_limits=check_limits,
             lower_c=effective_lower_c, upper_c=effective_upper_c, unlimited_c=unlimited_c, lowest_c=lowest_c,
             highest_c=highest_c, single_c=single_c, mid_c=mid_c, lower_r=effective_lower_r, upper_r=effective_upper_r,
             unlimited_r=unlimited_r, lowest_r=lowest_r, highest_r=highest_r, lower_z=effective_lower_z,
             upper_z=effective_upper_z, unlimited_z=unlimited_z, lowest_z=lowest_z, highest_z=highest_z,
-            machine_scale=machine_scale,
+            machine_scale=machine_scale, machine_scale_times_free_angle=machine_scale_times_free_angle,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -253,10 +255,10 @@ class PolarZ(Mechanism):
         # numbers of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
-        # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
-            return Status.IMPOSSIBLE
         r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
         x = r*cos_c
@@ -274,8 +276,9 @@ class PolarZ(Mechanism):
         # numbers of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
+        axis_r_minus_offset_r = axis_r - offset_r
         # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
+        if not (axis_r_minus_offset_r >= -1e-9 and axis_r_minus_offset_r <= 1000000001.0):
             return Status.IMPOSSIBLE
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
@@ -290,7 +293,7 @@ class PolarZ(Mechanism):
         (turn_c,) = turns
         ref_c, _, _ = reference
         k = self._constants
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_c = k.mid_c
         offset_c = k.offset_c
         offset_r = k.offset_r
@@ -301,7 +304,7 @@ class PolarZ(Mechanism):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
-        if radius_c > 1e-11*machine_scale:
+        if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y
         else:
@@ -364,10 +367,10 @@ class PolarZ(Mechanism):
         # numbers of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
-        # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
-            return Status.IMPOSSIBLE
         r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
         x = r*cos_c
@@ -387,10 +390,10 @@ class PolarZ(Mechanism):
         # numbers of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
-        # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
-            return Status.IMPOSSIBLE
         r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
         c = DEGREE*(axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)
@@ -409,10 +412,10 @@ class PolarZ(Mechanism):
         # numbers of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
-        # R where the machine has no pose
-        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
-            return Status.IMPOSSIBLE
         r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
         c = DEGREE*(axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)

@@ -20,9 +20,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 30 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
-    inverse: 72 additions, 69 multiplications, 21 divisions, 5 square roots, 7 sines
-    inverse, all 4 branches open: 285 additions, 276 multiplications, 84 divisions, 20 square roots, 28 sines
+    forward: 29 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
+    inverse: 67 additions, 49 multiplications, 15 divisions, 5 square roots, 7 sines
+    inverse, all 4 branches open: 265 additions, 196 multiplications, 60 divisions, 20 square roots, 28 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -97,6 +97,20 @@ class Constants(NamedTuple):
     rounding_q1: float
     swing_scale_q3_2: float
     size_q1_for_q3_2: float
+    a2_squared: float
+    size_q1_for_q3_2_times_rounding: float
+    machine_scale_times_free_angle: float
+    machine_scale_squared_times_plane: float
+    machine_scale_times_rounding: float
+    swing_scale_q3_2_squared_times_rounding: float
+    a2_squared_plus_effective_q3_2_squared: float
+    twice_d3: float
+    a2_plus_effective_q3_2: float
+    a2_minus_effective_q3_2: float
+    d4_by_effective_q3_2: float
+    a3_by_effective_q3_2: float
+    a2_times_shortest_link: float
+    twice_a2: float
 
 
 class PosRRR(OffsetKinematics):
@@ -307,6 +321,20 @@ class PosRRR(OffsetKinematics):
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
         swing_scale_q3_2 = 2.0*a2*effective_q3_2  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         size_q1_for_q3_2 = 2.0*abs(effective_q3_2)*a2
+        a2_squared = a2*a2
+        size_q1_for_q3_2_times_rounding = 1e-12*size_q1_for_q3_2
+        machine_scale_times_free_angle = 1e-11*machine_scale
+        machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
+        machine_scale_times_rounding = 1e-12*machine_scale
+        swing_scale_q3_2_squared_times_rounding = 1e-12*swing_scale_q3_2*swing_scale_q3_2
+        a2_squared_plus_effective_q3_2_squared = a2_squared + effective_q3_2*effective_q3_2
+        twice_d3 = 2.0*d3
+        a2_plus_effective_q3_2 = a2 + effective_q3_2
+        a2_minus_effective_q3_2 = a2 - effective_q3_2
+        d4_by_effective_q3_2 = d4/effective_q3_2
+        a3_by_effective_q3_2 = a3/effective_q3_2
+        a2_times_shortest_link = 1e-9*a2
+        twice_a2 = 2.0*a2
         return Constants(
             d1=d1, a1=a1, a2=a2, d3=d3, a3=a3, d4=d4, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
             check_limits=check_limits, lower_a1=effective_lower_a1, upper_a1=effective_upper_a1,
@@ -316,6 +344,15 @@ class PosRRR(OffsetKinematics):
             upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
             single_a3=single_a3, mid_a3=mid_a3, machine_scale=machine_scale, effective_q3_2=effective_q3_2,
             rounding_q1=rounding_q1, swing_scale_q3_2=swing_scale_q3_2, size_q1_for_q3_2=size_q1_for_q3_2,
+            a2_squared=a2_squared, size_q1_for_q3_2_times_rounding=size_q1_for_q3_2_times_rounding,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            machine_scale_squared_times_plane=machine_scale_squared_times_plane,
+            machine_scale_times_rounding=machine_scale_times_rounding,
+            swing_scale_q3_2_squared_times_rounding=swing_scale_q3_2_squared_times_rounding,
+            a2_squared_plus_effective_q3_2_squared=a2_squared_plus_effective_q3_2_squared, twice_d3=twice_d3,
+            a2_plus_effective_q3_2=a2_plus_effective_q3_2, a2_minus_effective_q3_2=a2_minus_effective_q3_2,
+            d4_by_effective_q3_2=d4_by_effective_q3_2, a3_by_effective_q3_2=a3_by_effective_q3_2,
+            a2_times_shortest_link=a2_times_shortest_link, twice_a2=twice_a2,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -339,36 +376,34 @@ class PosRRR(OffsetKinematics):
         q1 = DEGREE*(axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
-        x_at_q2 = a1*cos_q1
         q2 = DEGREE*(axis_a2 - offset_a2)
+        q3 = DEGREE*(axis_a3 - offset_a3)
+        q2_plus_q3 = q2 + q3
+        sin_q23 = sin(q2_plus_q3)
+        r11_at_q23 = -cos_q1*sin_q23
+        cos_q23 = cos(q2_plus_q3)
+        r12_at_q23 = -cos_q1*cos_q23
+        x_at_q2 = a1*cos_q1
         sin_q2 = sin(q2)
         r11_at_q2 = -cos_q1*sin_q2
         x_at_q3 = x_at_q2 + a2*r11_at_q2
-        q3 = DEGREE*(axis_a3 - offset_a3)
-        sin_q23 = sin(q2 + q3)
-        r11_at_q23 = -cos_q1*sin_q23
-        cos_q23 = cos(q2 + q3)
-        r12_at_q23 = -cos_q1*cos_q23
         x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
+        r21_at_q23 = -sin_q1*sin_q23
+        r22_at_q23 = -cos_q23*sin_q1
         y_at_q2 = a1*sin_q1
         r21_at_q2 = -sin_q1*sin_q2
         y_at_q3 = y_at_q2 + a2*r21_at_q2
-        r21_at_q23 = -sin_q1*sin_q23
-        r22_at_q23 = -cos_q23*sin_q1
         y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2*cos_q2
         z = z_at_q3 + a3*cos_q23 + d4*sin_q23
-        r13 = -r12_at_q23
-        r22 = -cos_q1
-        r23 = -r22_at_q23
         branch_arm = (x*cos_q1 + y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
         branch_elbow = (d4*cos_q3 - a3*sin_q3)/effective_q3_2
         return (
             (x, y, z),
-            ((r11_at_q23, sin_q1, r13), (r21_at_q23, r22, r23), (cos_q23, 0.0, sin_q23)),
+            ((r11_at_q23, sin_q1, -r12_at_q23), (r21_at_q23, -cos_q1, -r22_at_q23), (cos_q23, 0.0, sin_q23)),
             (branch_arm, branch_elbow),
         )
 
@@ -386,17 +421,15 @@ class PosRRR(OffsetKinematics):
         cos_q1 = cos(q1)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        sin_q23 = sin(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        sin_q23 = sin(q2_plus_q3)
         r11_at_q23 = -cos_q1*sin_q23
         sin_q1 = sin(q1)
-        cos_q23 = cos(q2 + q3)
+        cos_q23 = cos(q2_plus_q3)
         r12_at_q23 = -cos_q1*cos_q23
-        r13 = -r12_at_q23
         r21_at_q23 = -sin_q1*sin_q23
-        r22 = -cos_q1
         r22_at_q23 = -cos_q23*sin_q1
-        r23 = -r22_at_q23
-        return ((r11_at_q23, sin_q1, r13), (r21_at_q23, r22, r23), (cos_q23, 0.0, sin_q23))
+        return ((r11_at_q23, sin_q1, -r12_at_q23), (r21_at_q23, -cos_q1, -r22_at_q23), (cos_q23, 0.0, sin_q23))
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
@@ -409,12 +442,17 @@ class PosRRR(OffsetKinematics):
         k = self._constants
         a1 = k.a1
         a2 = k.a2
-        a3 = k.a3
+        a2_minus_effective_q3_2 = k.a2_minus_effective_q3_2
+        a2_plus_effective_q3_2 = k.a2_plus_effective_q3_2
+        a2_squared_plus_effective_q3_2_squared = k.a2_squared_plus_effective_q3_2_squared
+        a3_by_effective_q3_2 = k.a3_by_effective_q3_2
         d1 = k.d1
         d3 = k.d3
-        d4 = k.d4
+        d4_by_effective_q3_2 = k.d4_by_effective_q3_2
         effective_q3_2 = k.effective_q3_2
-        machine_scale = k.machine_scale
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding = k.machine_scale_times_rounding
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -426,7 +464,9 @@ class PosRRR(OffsetKinematics):
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         size_q1_for_q3_2 = k.size_q1_for_q3_2
-        swing_scale_q3_2 = k.swing_scale_q3_2
+        size_q1_for_q3_2_times_rounding = k.size_q1_for_q3_2_times_rounding
+        swing_scale_q3_2_squared_times_rounding = k.swing_scale_q3_2_squared_times_rounding
+        twice_d3 = k.twice_d3
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -435,22 +475,24 @@ class PosRRR(OffsetKinematics):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
-        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
-            missing = 0.5*abs(d3 - distance_q1) + 0.5*abs(d3 + distance_q1) - distance_q1
+        if not (ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1):
+            missing = 0.5*(abs(d3 - distance_q1) + abs(d3 + distance_q1)) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         wrist_y_from_q1 = z - d1  # what the unknown links must span
+        wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
         wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
         # a later step needs this of q1: no larger in size than
         value_q1_for_q3 = (
-            wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 + wrist_y_from_q1*wrist_y_from_q1
-            - a2*a2 - effective_q3_2*effective_q3_2
+            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+            - a2_squared_plus_effective_q3_2_squared
         )
-        rate_q1_for_q3 = -2.0*d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+        rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
         # to the boundary of the later step
-        if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3_2:
+        if abs(rate_q1_for_q3) > size_q1_for_q3_2_times_rounding:
             excess_q1_for_q3 = (
                 value_q1_for_q3 - size_q1_for_q3_2
                 if value_q1_for_q3 > 0.0
@@ -460,53 +502,57 @@ class PosRRR(OffsetKinematics):
         else:
             turn_q1_for_q3 = 0.0
         turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)/turned_length_q1_for_q3
+        one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
+        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
         # its reference where it is free
-        if distance_q1 > 1e-11*machine_scale:
-            divisor_q1 = distance_q1*distance_q1
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/divisor_q1
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/divisor_q1
+        if distance_q1 > machine_scale_times_free_angle:
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/distance_q1_squared
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/distance_q1_squared
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
         turned_cos_q1_for_q3 = (
-            (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+            one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
         )
         turned_sin_q1_for_q3 = (
-            (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+            one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
         )
         # what is left of its own equation
         turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
         # turned within rounding, where the rest can be reached
         ahead_q1 = (
             ahead_q1_before_q1_for_q3
-            if ahead_squared_q1 > 1e-6*machine_scale*machine_scale
+            if ahead_squared_q1 > machine_scale_squared_times_plane
             else (
                 ahead_q1_before_q1_for_q3
                 if abs(value_q1_for_q3) <= size_q1_for_q3_2
                 else (
                     ahead_q1_before_q1_for_q3
-                    if turned_cost_q1_for_q3 > 1e-12*machine_scale
+                    if turned_cost_q1_for_q3 > machine_scale_times_rounding
                     else turned_ahead_q1_for_q3
                 )
             )
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (effective_q3_2 + reach - a2)*(a2 + reach - effective_q3_2)  # 1 + cosine, times the scale
+        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
+        # 1 - cosine, times the scale
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        if not (sine_square_q3 >= -1e-12*swing_scale_q3_2*swing_scale_q3_2):
+        if not (sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding):
             missing = (
-                0.5*abs(effective_q3_2 + reach - a2) + 0.5*abs(a2 + reach - effective_q3_2)
-                + 0.5*abs(a2 + effective_q3_2 - reach) + 0.5*abs(a2 + effective_q3_2 + reach) - a2 - effective_q3_2
-                - reach
+                0.5*(
+                    abs(a2_minus_effective_q3_2 - reach) + abs(a2_minus_effective_q3_2 + reach)
+                    + abs(a2_plus_effective_q3_2 - reach) + abs(a2_plus_effective_q3_2 + reach)
+                )
+                - a2_plus_effective_q3_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # turned within rounding, where the rest can be reached
-        if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
+        if ahead_squared_q1 > machine_scale_squared_times_plane:
             cos_q1 = cos_q1_before_q1_for_q3
             sin_q1 = sin_q1_before_q1_for_q3
         else:
@@ -516,7 +562,7 @@ class PosRRR(OffsetKinematics):
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
                 # turned within rounding, where the rest can be reached
-                if turned_cost_q1_for_q3 > 1e-12*machine_scale:
+                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
                 else:
@@ -532,7 +578,7 @@ class PosRRR(OffsetKinematics):
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
@@ -546,8 +592,8 @@ class PosRRR(OffsetKinematics):
         axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
-        sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
+        cos_q3 = a3_by_effective_q3_2*cos_swing_q3 - d4_by_effective_q3_2*sin_swing_q3
+        sin_q3 = a3_by_effective_q3_2*sin_swing_q3 + d4_by_effective_q3_2*cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
@@ -626,9 +672,10 @@ class PosRRR(OffsetKinematics):
         r11_at_q2 = -cos_q1*sin_q2
         x_at_q3 = x_at_q2 + a2*r11_at_q2
         q3 = DEGREE*(axis_a3 - offset_a3)
-        sin_q23 = sin(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        sin_q23 = sin(q2_plus_q3)
         r11_at_q23 = -cos_q1*sin_q23
-        cos_q23 = cos(q2 + q3)
+        cos_q23 = cos(q2_plus_q3)
         r12_at_q23 = -cos_q1*cos_q23
         x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
         y_at_q2 = a1*sin_q1
@@ -668,23 +715,26 @@ class PosRRR(OffsetKinematics):
         r21_at_q2 = -sin_q1*sin_q2
         y_at_q3 = y_at_q2 + a2*r21_at_q2
         q3 = DEGREE*(axis_a3 - offset_a3)
-        sin_q23 = sin(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        sin_q23 = sin(q2_plus_q3)
         r21_at_q23 = -sin_q1*sin_q23
-        cos_q23 = cos(q2 + q3)
+        cos_q23 = cos(q2_plus_q3)
         r22_at_q23 = -cos_q23*sin_q1
         y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z = z_at_q3 + a3*cos_q23 + d4*sin_q23
         x_at_q2 = a1*cos_q1
         r11_at_q2 = -cos_q1*sin_q2
         x_at_q3 = x_at_q2 + a2*r11_at_q2
         r11_at_q23 = -cos_q1*sin_q23
         r12_at_q23 = -cos_q1*cos_q23
         x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2*cos_q2
+        z = z_at_q3 + a3*cos_q23 + d4*sin_q23
+        z_minus_d1 = z - d1
+        z_minus_z_at_q3 = z - z_at_q3
         return (
-            (-y, -(z - d1)*cos_q1, -(z - z_at_q3)*cos_q1),
-            (x, -(z - d1)*sin_q1, -(z - z_at_q3)*sin_q1),
+            (-y, -z_minus_d1*cos_q1, -z_minus_z_at_q3*cos_q1),
+            (x, -z_minus_d1*sin_q1, -z_minus_z_at_q3*sin_q1),
             (0.0, (x - x_at_q2)*cos_q1 + (y - y_at_q2)*sin_q1, (x - x_at_q3)*cos_q1 + (y - y_at_q3)*sin_q1),
         )
 
@@ -717,23 +767,26 @@ class PosRRR(OffsetKinematics):
         r21_at_q2 = -sin_q1*sin_q2
         y_at_q3 = y_at_q2 + a2*r21_at_q2
         q3 = DEGREE*(axis_a3 - offset_a3)
-        sin_q23 = sin(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        sin_q23 = sin(q2_plus_q3)
         r21_at_q23 = -sin_q1*sin_q23
-        cos_q23 = cos(q2 + q3)
+        cos_q23 = cos(q2_plus_q3)
         r22_at_q23 = -cos_q23*sin_q1
         y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z = z_at_q3 + a3*cos_q23 + d4*sin_q23
         x_at_q2 = a1*cos_q1
         r11_at_q2 = -cos_q1*sin_q2
         x_at_q3 = x_at_q2 + a2*r11_at_q2
         r11_at_q23 = -cos_q1*sin_q23
         r12_at_q23 = -cos_q1*cos_q23
         x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2*cos_q2
+        z = z_at_q3 + a3*cos_q23 + d4*sin_q23
+        z_minus_d1 = z - d1
+        z_minus_z_at_q3 = z - z_at_q3
         return (
-            (-y, -(z - d1)*cos_q1, -(z - z_at_q3)*cos_q1),
-            (x, -(z - d1)*sin_q1, -(z - z_at_q3)*sin_q1),
+            (-y, -z_minus_d1*cos_q1, -z_minus_z_at_q3*cos_q1),
+            (x, -z_minus_d1*sin_q1, -z_minus_z_at_q3*sin_q1),
             (0.0, (x - x_at_q2)*cos_q1 + (y - y_at_q2)*sin_q1, (x - x_at_q3)*cos_q1 + (y - y_at_q3)*sin_q1),
             (0.0, sin_q1, sin_q1),
             (0.0, -cos_q1, -cos_q1),
@@ -752,11 +805,15 @@ class PosRRR(OffsetKinematics):
         k = self._constants
         a1 = k.a1
         a2 = k.a2
+        a2_squared = k.a2_squared
+        a2_times_shortest_link = k.a2_times_shortest_link
         a3 = k.a3
         d1 = k.d1
         d3 = k.d3
         d4 = k.d4
-        machine_scale = k.machine_scale
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding = k.machine_scale_times_rounding
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -767,6 +824,7 @@ class PosRRR(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
+        twice_a2 = k.twice_a2
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -777,28 +835,29 @@ class PosRRR(OffsetKinematics):
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         tool_z = d3 + point_y  # the point seen from the last moving joint
         ahead_squared_q1 = (distance_q1 + tool_z)*(distance_q1 - tool_z)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
-        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
-            missing = 0.5*abs(distance_q1 - tool_z) + 0.5*abs(distance_q1 + tool_z) - distance_q1
+        if not (ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1):
+            missing = 0.5*(abs(distance_q1 - tool_z) + abs(distance_q1 + tool_z)) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         tool_x = a3 + point_x  # the point seen from the last moving joint
         tool_y = -d4 - point_z  # the point seen from the last moving joint
         effective_q3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # q3: its effective length is too short
-        if not (effective_q3 > 1e-9*a2):
+        if not (effective_q3 > a2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        divisor_q3 = effective_q3 if effective_q3 > 1e-9*a2 else 1.0
-        swing_scale_q3 = 2.0*a2*divisor_q3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
+        swing_scale_q3 = effective_q3*twice_a2  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         wrist_y_from_q1 = z - d1  # what the unknown links must span
+        wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
         wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
         # a later step needs this of q1: no larger in size than
         value_q1_for_q3 = (
-            wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 + wrist_y_from_q1*wrist_y_from_q1
-            - a2*a2 - divisor_q3*divisor_q3
+            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 - a2_squared
+            - effective_q3*effective_q3
         )
-        size_q1_for_q3 = 2.0*abs(divisor_q3)*a2
+        size_q1_for_q3 = abs(effective_q3)*twice_a2
         rate_q1_for_q3 = -2.0*tool_z*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
         # to the boundary of the later step
         if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
@@ -811,52 +870,57 @@ class PosRRR(OffsetKinematics):
         else:
             turn_q1_for_q3 = 0.0
         turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - tool_z*turn_q1_for_q3)/turned_length_q1_for_q3
+        one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
+        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - tool_z*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
         # its reference where it is free
-        if distance_q1 > 1e-11*machine_scale:
-            divisor_q1 = distance_q1*distance_q1
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - tool_z*y)/divisor_q1
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + tool_z*x)/divisor_q1
+        if distance_q1 > machine_scale_times_free_angle:
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - tool_z*y)/distance_q1_squared
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + tool_z*x)/distance_q1_squared
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
         turned_cos_q1_for_q3 = (
-            (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+            one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
         )
         turned_sin_q1_for_q3 = (
-            (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+            one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
         )
         # what is left of its own equation
         turned_cost_q1_for_q3 = abs(tool_z + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
         # turned within rounding, where the rest can be reached
         ahead_q1 = (
             ahead_q1_before_q1_for_q3
-            if ahead_squared_q1 > 1e-6*machine_scale*machine_scale
+            if ahead_squared_q1 > machine_scale_squared_times_plane
             else (
                 ahead_q1_before_q1_for_q3
                 if abs(value_q1_for_q3) <= size_q1_for_q3
                 else (
                     ahead_q1_before_q1_for_q3
-                    if turned_cost_q1_for_q3 > 1e-12*machine_scale
+                    if turned_cost_q1_for_q3 > machine_scale_times_rounding
                     else turned_ahead_q1_for_q3
                 )
             )
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2 + divisor_q3 + reach)*(a2 + divisor_q3 - reach)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (divisor_q3 + reach - a2)*(a2 + reach - divisor_q3)  # 1 + cosine, times the scale
+        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
+        a2_plus_divisor_q3 = a2 + effective_q3
+        one_less_cos_q3 = (a2_plus_divisor_q3 + reach)*(a2_plus_divisor_q3 - reach)  # 1 - cosine, times the scale
+        a2_minus_divisor_q3 = a2 - effective_q3
+        one_plus_cos_q3 = (reach - a2_minus_divisor_q3)*(a2_minus_divisor_q3 + reach)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
             missing = (
-                0.5*abs(divisor_q3 + reach - a2) + 0.5*abs(a2 + reach - divisor_q3) + 0.5*abs(a2 + divisor_q3 - reach)
-                + 0.5*abs(a2 + divisor_q3 + reach) - a2 - divisor_q3 - reach
+                0.5*(
+                    abs(a2_minus_divisor_q3 - reach) + abs(a2_minus_divisor_q3 + reach) + abs(a2_plus_divisor_q3 - reach)
+                    + abs(a2_plus_divisor_q3 + reach)
+                )
+                - a2 - effective_q3 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # turned within rounding, where the rest can be reached
-        if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
+        if ahead_squared_q1 > machine_scale_squared_times_plane:
             cos_q1 = cos_q1_before_q1_for_q3
             sin_q1 = sin_q1_before_q1_for_q3
         else:
@@ -866,7 +930,7 @@ class PosRRR(OffsetKinematics):
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
                 # turned within rounding, where the rest can be reached
-                if turned_cost_q1_for_q3 > 1e-12*machine_scale:
+                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
                 else:
@@ -881,10 +945,10 @@ class PosRRR(OffsetKinematics):
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
-        cos_q3 = tool_x*cos_swing_q3/divisor_q3 + tool_y*sin_swing_q3/divisor_q3
-        sin_q3 = tool_x*sin_swing_q3/divisor_q3 - tool_y*cos_swing_q3/divisor_q3
+        cos_q3 = (tool_x*cos_swing_q3 + tool_y*sin_swing_q3)/effective_q3
+        sin_q3 = (tool_x*sin_swing_q3 - tool_y*cos_swing_q3)/effective_q3
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = tool_y*cos_q3 + tool_x*sin_q3
             arm_across_q2 = a2 + tool_x*cos_q3 - tool_y*sin_q3
             direction_x_q2 = arm_across_q2*wrist_y_from_q1 - arm_along_q2*wrist_x_from_q1
@@ -930,26 +994,24 @@ class PosRRR(OffsetKinematics):
         cos_q1 = cos(q1)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        sin_q23 = sin(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        sin_q23 = sin(q2_plus_q3)
         r11_at_q23 = -cos_q1*sin_q23
+        cos_q23 = cos(q2_plus_q3)
+        r12_at_q23 = -cos_q1*cos_q23
         x_at_q2 = a1*cos_q1
         sin_q2 = sin(q2)
         r11_at_q2 = -cos_q1*sin_q2
         x_at_q3 = x_at_q2 + a2*r11_at_q2
-        cos_q23 = cos(q2 + q3)
-        r12_at_q23 = -cos_q1*cos_q23
         flange_x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
-        r13 = -r12_at_q23
-        x = flange_x + point_x*r11_at_q23 + point_y*sin_q1 + point_z*r13
+        x = flange_x + point_x*r11_at_q23 + point_y*sin_q1 - point_z*r12_at_q23
         r21_at_q23 = -sin_q1*sin_q23
+        r22_at_q23 = -cos_q23*sin_q1
         y_at_q2 = a1*sin_q1
         r21_at_q2 = -sin_q1*sin_q2
         y_at_q3 = y_at_q2 + a2*r21_at_q2
-        r22_at_q23 = -cos_q23*sin_q1
         flange_y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
-        r22 = -cos_q1
-        r23 = -r22_at_q23
-        y = flange_y + point_x*r21_at_q23 + point_y*r22 + point_z*r23
+        y = flange_y + point_x*r21_at_q23 - point_y*cos_q1 - point_z*r22_at_q23
         branch_arm = (x*cos_q1 + y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)

@@ -19,9 +19,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 26 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 89 additions, 76 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 145 additions, 107 multiplications, 35 divisions, 8 square roots, 10 sines
+    forward: 22 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
+    inverse: 85 additions, 72 multiplications, 22 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 137 additions, 99 multiplications, 35 divisions, 8 square roots, 10 sines
 
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
 
@@ -98,6 +98,10 @@ class Constants(NamedTuple):
     highest_z: float
     machine_scale: float
     scale_a2: float
+    scale_a2_squared_times_rounding: float
+    machine_scale_times_free_angle: float
+    arm_length_1_plus_arm_length_2: float
+    arm_length_1_minus_arm_length_2: float
 
 
 class Scara3Z(TwistChoice):
@@ -314,6 +318,10 @@ class Scara3Z(TwistChoice):
         highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
         machine_scale = arm_length_1 + arm_length_2 + arm_length_3  # a length of the machine
         scale_a2 = 2.0*arm_length_1*arm_length_2  # a2: law of cosines in the x² + y² equation
+        scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
+        machine_scale_times_free_angle = 1e-11*machine_scale
+        arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
+        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
         return Constants(
             arm_length_1=arm_length_1, arm_length_2=arm_length_2, arm_length_3=arm_length_3, offset_a1=offset_a1,
             offset_a2=offset_a2, offset_a3=offset_a3, offset_z=offset_z, check_limits=check_limits,
@@ -324,6 +332,10 @@ class Scara3Z(TwistChoice):
             unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3, single_a3=single_a3, mid_a3=mid_a3,
             lower_z=effective_lower_z, upper_z=effective_upper_z, unlimited_z=unlimited_z, lowest_z=lowest_z,
             highest_z=highest_z, machine_scale=machine_scale, scale_a2=scale_a2,
+            scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            arm_length_1_plus_arm_length_2=arm_length_1_plus_arm_length_2,
+            arm_length_1_minus_arm_length_2=arm_length_1_minus_arm_length_2,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -343,15 +355,17 @@ class Scara3Z(TwistChoice):
         ):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
-        cos_a1 = cos(a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
-        cos_a12 = cos(a1 + a2)
+        a1_plus_a2 = a1 + a2
         a3 = DEGREE*(axis_a3 - offset_a3)
-        cos_a123 = cos(a1 + a2 + a3)
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        cos_a123 = cos(a1_plus_a2_plus_a3)
+        cos_a1 = cos(a1)
+        cos_a12 = cos(a1_plus_a2)
         x = arm_length_1*cos_a1 + arm_length_2*cos_a12 + arm_length_3*cos_a123
+        sin_a123 = sin(a1_plus_a2_plus_a3)
         sin_a1 = sin(a1)
-        sin_a12 = sin(a1 + a2)
-        sin_a123 = sin(a1 + a2 + a3)
+        sin_a12 = sin(a1_plus_a2)
         y = arm_length_1*sin_a1 + arm_length_2*sin_a12 + arm_length_3*sin_a123
         joint_z = axis_z - offset_z
         sin_a2 = sin(a2)
@@ -372,8 +386,9 @@ class Scara3Z(TwistChoice):
         a1 = DEGREE*(axis_a1 - offset_a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
         a3 = DEGREE*(axis_a3 - offset_a3)
-        cos_a123 = cos(a1 + a2 + a3)
-        sin_a123 = sin(a1 + a2 + a3)
+        a1_plus_a2_plus_a3 = a1 + a2 + a3
+        cos_a123 = cos(a1_plus_a2_plus_a3)
+        sin_a123 = sin(a1_plus_a2_plus_a3)
         return ((cos_a123, -sin_a123, 0.0), (sin_a123, cos_a123, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
@@ -387,9 +402,11 @@ class Scara3Z(TwistChoice):
         ref_a1, ref_a2, ref_a3, _ = reference
         k = self._constants
         arm_length_1 = k.arm_length_1
+        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_2 = k.arm_length_2
         arm_length_3 = k.arm_length_3
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -397,7 +414,7 @@ class Scara3Z(TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_z = k.offset_z
-        scale_a2 = k.scale_a2
+        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -413,23 +430,24 @@ class Scara3Z(TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
+        cos_heading = heading_along/heading_length
         wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
-        sin_heading = heading_across/heading_divisor
+        sin_heading = heading_across/heading_length
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (arm_length_1 + arm_length_2 + reach)*(arm_length_1 + arm_length_2 - reach)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_2 + reach - arm_length_1)*(arm_length_1 + reach - arm_length_2)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*scale_a2*scale_a2):
+        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
             missing = (
-                0.5*abs(arm_length_2 + reach - arm_length_1) + 0.5*abs(arm_length_1 + reach - arm_length_2)
-                + 0.5*abs(arm_length_1 + arm_length_2 - reach) + 0.5*abs(arm_length_1 + arm_length_2 + reach)
-                - arm_length_1 - arm_length_2 - reach
+                0.5*(
+                    abs(arm_length_1_minus_arm_length_2 - reach) + abs(arm_length_1_minus_arm_length_2 + reach)
+                    + abs(arm_length_1_plus_arm_length_2 - reach) + abs(arm_length_1_plus_arm_length_2 + reach)
+                )
+                - arm_length_1_plus_arm_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
@@ -437,7 +455,7 @@ class Scara3Z(TwistChoice):
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         # a1: linear pair in the x and y equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
             arm_across_a1 = arm_length_2*sin_a2
             direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
@@ -553,22 +571,22 @@ class Scara3Z(TwistChoice):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
-        sin_a12 = sin(a1 + a2)
-        a3 = DEGREE*(axis_a3 - offset_a3)
-        sin_a123 = sin(a1 + a2 + a3)
         cos_a1 = cos(a1)
-        cos_a12 = cos(a1 + a2)
-        cos_a123 = cos(a1 + a2 + a3)
+        a2 = DEGREE*(axis_a2 - offset_a2)
+        a1_plus_a2 = a1 + a2
+        a3 = DEGREE*(axis_a3 - offset_a3)
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        cos_a123 = cos(a1_plus_a2_plus_a3)
+        arm_length_3_times_cos_a123 = arm_length_3*cos_a123
+        sin_a123 = sin(a1_plus_a2_plus_a3)
+        arm_length_3_times_sin_a123 = arm_length_3*sin_a123
+        sin_a12 = sin(a1_plus_a2)
+        part = arm_length_3_times_sin_a123 + arm_length_2*sin_a12
+        cos_a12 = cos(a1_plus_a2)
+        part_2 = arm_length_3_times_cos_a123 + arm_length_2*cos_a12
         return (
-            (
-                -arm_length_1*sin_a1 - arm_length_2*sin_a12 - arm_length_3*sin_a123,
-                -arm_length_2*sin_a12 - arm_length_3*sin_a123, -arm_length_3*sin_a123, 0.0,
-            ),
-            (
-                arm_length_1*cos_a1 + arm_length_2*cos_a12 + arm_length_3*cos_a123,
-                arm_length_2*cos_a12 + arm_length_3*cos_a123, arm_length_3*cos_a123, 0.0,
-            ),
+            (-part - arm_length_1*sin_a1, -part, -arm_length_3_times_sin_a123, 0.0),
+            (part_2 + arm_length_1*cos_a1, part_2, arm_length_3_times_cos_a123, 0.0),
             (0.0, 0.0, 0.0, 1.0),
             (1.0, 1.0, 1.0, 0.0),
         )
@@ -594,22 +612,22 @@ class Scara3Z(TwistChoice):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
-        sin_a12 = sin(a1 + a2)
-        a3 = DEGREE*(axis_a3 - offset_a3)
-        sin_a123 = sin(a1 + a2 + a3)
         cos_a1 = cos(a1)
-        cos_a12 = cos(a1 + a2)
-        cos_a123 = cos(a1 + a2 + a3)
+        a2 = DEGREE*(axis_a2 - offset_a2)
+        a1_plus_a2 = a1 + a2
+        a3 = DEGREE*(axis_a3 - offset_a3)
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        cos_a123 = cos(a1_plus_a2_plus_a3)
+        arm_length_3_times_cos_a123 = arm_length_3*cos_a123
+        sin_a123 = sin(a1_plus_a2_plus_a3)
+        arm_length_3_times_sin_a123 = arm_length_3*sin_a123
+        sin_a12 = sin(a1_plus_a2)
+        part = arm_length_3_times_sin_a123 + arm_length_2*sin_a12
+        cos_a12 = cos(a1_plus_a2)
+        part_2 = arm_length_3_times_cos_a123 + arm_length_2*cos_a12
         return (
-            (
-                -arm_length_1*sin_a1 - arm_length_2*sin_a12 - arm_length_3*sin_a123,
-                -arm_length_2*sin_a12 - arm_length_3*sin_a123, -arm_length_3*sin_a123, 0.0,
-            ),
-            (
-                arm_length_1*cos_a1 + arm_length_2*cos_a12 + arm_length_3*cos_a123,
-                arm_length_2*cos_a12 + arm_length_3*cos_a123, arm_length_3*cos_a123, 0.0,
-            ),
+            (-part - arm_length_1*sin_a1, -part, -arm_length_3_times_sin_a123, 0.0),
+            (part_2 + arm_length_1*cos_a1, part_2, arm_length_3_times_cos_a123, 0.0),
             (0.0, 0.0, 0.0, 1.0),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
@@ -625,9 +643,8 @@ class Scara3Z(TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
+        cos_heading = heading_along/heading_length
+        sin_heading = heading_across/heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

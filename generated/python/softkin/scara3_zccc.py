@@ -19,9 +19,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 26 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 89 additions, 76 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 145 additions, 107 multiplications, 35 divisions, 8 square roots, 10 sines
+    forward: 22 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
+    inverse: 85 additions, 72 multiplications, 22 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 137 additions, 99 multiplications, 35 divisions, 8 square roots, 10 sines
 
 The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
 
@@ -102,6 +102,12 @@ class Constants(NamedTuple):
     mid_a4: float
     machine_scale: float
     scale_a3: float
+    scale_a3_squared_times_rounding: float
+    machine_scale_times_free_angle: float
+    link_length_1_plus_link_length_2: float
+    link_length_1_minus_link_length_2: float
+    link_length_1_times_shortest_link: float
+    twice_link_length_1: float
 
 
 class Scara3ZCCC(OffsetKinematics, TwistChoice):
@@ -318,6 +324,12 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         machine_scale = link_length_1 + link_length_2 + link_length_3  # a length of the machine
         scale_a3 = 2.0*link_length_1*link_length_2  # a3: law of cosines in the x² + y² equation
+        scale_a3_squared_times_rounding = 1e-12*scale_a3*scale_a3
+        machine_scale_times_free_angle = 1e-11*machine_scale
+        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        link_length_1_times_shortest_link = 1e-9*link_length_1
+        twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, link_length_3=link_length_3,
             offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3, offset_a4=offset_a4,
@@ -328,6 +340,12 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3, single_a3=single_a3, mid_a3=mid_a3,
             lower_a4=effective_lower_a4, upper_a4=effective_upper_a4, unlimited_a4=unlimited_a4, lowest_a4=lowest_a4,
             highest_a4=highest_a4, single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale, scale_a3=scale_a3,
+            scale_a3_squared_times_rounding=scale_a3_squared_times_rounding,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
+            link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
+            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
+            twice_link_length_1=twice_link_length_1,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -347,15 +365,17 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         ):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
-        cos_a2 = cos(a2)
         a3 = DEGREE*(axis_a3 - offset_a3)
-        cos_a23 = cos(a2 + a3)
+        a2_plus_a3 = a2 + a3
         a4 = DEGREE*(axis_a4 - offset_a4)
-        cos_a234 = cos(a2 + a3 + a4)
+        a2_plus_a3_plus_a4 = a2_plus_a3 + a4
+        cos_a234 = cos(a2_plus_a3_plus_a4)
+        cos_a2 = cos(a2)
+        cos_a23 = cos(a2_plus_a3)
         x = link_length_1*cos_a2 + link_length_2*cos_a23 + link_length_3*cos_a234
+        sin_a234 = sin(a2_plus_a3_plus_a4)
         sin_a2 = sin(a2)
-        sin_a23 = sin(a2 + a3)
-        sin_a234 = sin(a2 + a3 + a4)
+        sin_a23 = sin(a2_plus_a3)
         y = link_length_1*sin_a2 + link_length_2*sin_a23 + link_length_3*sin_a234
         a1 = axis_a1 - offset_a1
         sin_a3 = sin(a3)
@@ -376,8 +396,9 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         a2 = DEGREE*(axis_a2 - offset_a2)
         a3 = DEGREE*(axis_a3 - offset_a3)
         a4 = DEGREE*(axis_a4 - offset_a4)
-        cos_a234 = cos(a2 + a3 + a4)
-        sin_a234 = sin(a2 + a3 + a4)
+        a2_plus_a3_plus_a4 = a2 + a3 + a4
+        cos_a234 = cos(a2_plus_a3_plus_a4)
+        sin_a234 = sin(a2_plus_a3_plus_a4)
         return ((cos_a234, -sin_a234, 0.0), (sin_a234, cos_a234, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
@@ -391,9 +412,11 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         _, ref_a2, ref_a3, ref_a4 = reference
         k = self._constants
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
         mid_a4 = k.mid_a4
@@ -401,7 +424,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        scale_a3 = k.scale_a3
+        scale_a3_squared_times_rounding = k.scale_a3_squared_times_rounding
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         single_a4 = k.single_a4
@@ -417,23 +440,24 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
+        cos_heading = heading_along/heading_length
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
-        sin_heading = heading_across/heading_divisor
+        sin_heading = heading_across/heading_length
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*scale_a3*scale_a3):
+        if not (sine_square_a3 >= -scale_a3_squared_times_rounding):
             missing = (
-                0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
-                + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
-                - link_length_1 - link_length_2 - reach
+                0.5*(
+                    abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
+                    + abs(link_length_1_plus_link_length_2 - reach) + abs(link_length_1_plus_link_length_2 + reach)
+                )
+                - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         axis_a1 = offset_a1 + z
@@ -442,7 +466,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
         # a2: linear pair in the x and y equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
             direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
@@ -557,22 +581,22 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         sin_a2 = sin(a2)
-        a3 = DEGREE*(axis_a3 - offset_a3)
-        sin_a23 = sin(a2 + a3)
-        a4 = DEGREE*(axis_a4 - offset_a4)
-        sin_a234 = sin(a2 + a3 + a4)
         cos_a2 = cos(a2)
-        cos_a23 = cos(a2 + a3)
-        cos_a234 = cos(a2 + a3 + a4)
+        a3 = DEGREE*(axis_a3 - offset_a3)
+        a2_plus_a3 = a2 + a3
+        a4 = DEGREE*(axis_a4 - offset_a4)
+        a2_plus_a3_plus_a4 = a2_plus_a3 + a4
+        cos_a234 = cos(a2_plus_a3_plus_a4)
+        cos_a234_times_link_length_3 = link_length_3*cos_a234
+        sin_a234 = sin(a2_plus_a3_plus_a4)
+        link_length_3_times_sin_a234 = link_length_3*sin_a234
+        sin_a23 = sin(a2_plus_a3)
+        part = link_length_3_times_sin_a234 + link_length_2*sin_a23
+        cos_a23 = cos(a2_plus_a3)
+        part_2 = cos_a234_times_link_length_3 + link_length_2*cos_a23
         return (
-            (
-                0.0, -link_length_1*sin_a2 - link_length_2*sin_a23 - link_length_3*sin_a234,
-                -link_length_2*sin_a23 - link_length_3*sin_a234, -link_length_3*sin_a234,
-            ),
-            (
-                0.0, link_length_1*cos_a2 + link_length_2*cos_a23 + link_length_3*cos_a234,
-                link_length_2*cos_a23 + link_length_3*cos_a234, link_length_3*cos_a234,
-            ),
+            (0.0, -part - link_length_1*sin_a2, -part, -link_length_3_times_sin_a234),
+            (0.0, part_2 + link_length_1*cos_a2, part_2, cos_a234_times_link_length_3),
             (1.0, 0.0, 0.0, 0.0),
             (0.0, 1.0, 1.0, 1.0),
         )
@@ -598,22 +622,22 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         sin_a2 = sin(a2)
-        a3 = DEGREE*(axis_a3 - offset_a3)
-        sin_a23 = sin(a2 + a3)
-        a4 = DEGREE*(axis_a4 - offset_a4)
-        sin_a234 = sin(a2 + a3 + a4)
         cos_a2 = cos(a2)
-        cos_a23 = cos(a2 + a3)
-        cos_a234 = cos(a2 + a3 + a4)
+        a3 = DEGREE*(axis_a3 - offset_a3)
+        a2_plus_a3 = a2 + a3
+        a4 = DEGREE*(axis_a4 - offset_a4)
+        a2_plus_a3_plus_a4 = a2_plus_a3 + a4
+        cos_a234 = cos(a2_plus_a3_plus_a4)
+        cos_a234_times_link_length_3 = link_length_3*cos_a234
+        sin_a234 = sin(a2_plus_a3_plus_a4)
+        link_length_3_times_sin_a234 = link_length_3*sin_a234
+        sin_a23 = sin(a2_plus_a3)
+        part = link_length_3_times_sin_a234 + link_length_2*sin_a23
+        cos_a23 = cos(a2_plus_a3)
+        part_2 = cos_a234_times_link_length_3 + link_length_2*cos_a23
         return (
-            (
-                0.0, -link_length_1*sin_a2 - link_length_2*sin_a23 - link_length_3*sin_a234,
-                -link_length_2*sin_a23 - link_length_3*sin_a234, -link_length_3*sin_a234,
-            ),
-            (
-                0.0, link_length_1*cos_a2 + link_length_2*cos_a23 + link_length_3*cos_a234,
-                link_length_2*cos_a23 + link_length_3*cos_a234, link_length_3*cos_a234,
-            ),
+            (0.0, -part - link_length_1*sin_a2, -part, -link_length_3_times_sin_a234),
+            (0.0, part_2 + link_length_1*cos_a2, part_2, cos_a234_times_link_length_3),
             (1.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
@@ -629,9 +653,8 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
+        cos_heading = heading_along/heading_length
+        sin_heading = heading_across/heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
@@ -645,9 +668,10 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         _, ref_a2, ref_a3, ref_a4 = reference
         k = self._constants
         link_length_1 = k.link_length_1
+        link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
         offset_a1 = k.offset_a1
@@ -656,6 +680,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         offset_a4 = k.offset_a4
         single_a2 = k.single_a2
         single_a3 = k.single_a3
+        twice_link_length_1 = k.twice_link_length_1
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -666,27 +691,29 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         free_a4 = (ref_a4 - offset_a4)*DEGREE
         cos_a4 = cos(free_a4)
         sin_a4 = sin(free_a4)
+        link_length_3_plus_point_x = link_length_3 + point_x
         # the point seen from the last moving joint
-        tool_x = link_length_2 + link_length_3*cos_a4 + point_x*cos_a4 - point_y*sin_a4
-        tool_y = point_y*cos_a4 + link_length_3*sin_a4 + point_x*sin_a4  # the point seen from the last moving joint
+        tool_x = link_length_2 + link_length_3_plus_point_x*cos_a4 - point_y*sin_a4
+        tool_y = point_y*cos_a4 + link_length_3_plus_point_x*sin_a4  # the point seen from the last moving joint
         effective_a3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > 1e-9*link_length_1):
+        if not (effective_a3 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        divisor_a3 = effective_a3 if effective_a3 > 1e-9*link_length_1 else 1.0
-        swing_scale_a3 = 2.0*divisor_a3*link_length_1  # a3: law of cosines in the x² + y² equation
+        swing_scale_a3 = effective_a3*twice_link_length_1  # a3: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a3 = (divisor_a3 + link_length_1 + reach)*(divisor_a3 + link_length_1 - reach)
+        one_less_cos_a3 = (effective_a3 + link_length_1_minus_reach)*(effective_a3 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (link_length_1 + reach - divisor_a3)*(divisor_a3 + reach - link_length_1)
+        one_plus_cos_a3 = (link_length_1_plus_reach - effective_a3)*(effective_a3 - link_length_1_minus_reach)
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             missing = (
-                0.5*abs(link_length_1 + reach - divisor_a3) + 0.5*abs(divisor_a3 + reach - link_length_1)
-                + 0.5*abs(divisor_a3 + link_length_1 - reach) + 0.5*abs(divisor_a3 + link_length_1 + reach) - divisor_a3
-                - link_length_1 - reach
+                0.5*abs(effective_a3 - link_length_1_minus_reach) + 0.5*abs(effective_a3 + link_length_1_minus_reach)
+                + 0.5*abs(effective_a3 - link_length_1_plus_reach) + 0.5*abs(effective_a3 + link_length_1_plus_reach)
+                - effective_a3 - link_length_1 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         a1 = z - point_z  # a1: affine in the z equation
@@ -695,10 +722,10 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
-        cos_a3 = tool_x*cos_swing_a3/divisor_a3 + tool_y*sin_swing_a3/divisor_a3
-        sin_a3 = tool_x*sin_swing_a3/divisor_a3 - tool_y*cos_swing_a3/divisor_a3
+        cos_a3 = (tool_x*cos_swing_a3 + tool_y*sin_swing_a3)/effective_a3
+        sin_a3 = (tool_x*sin_swing_a3 - tool_y*cos_swing_a3)/effective_a3
         # a2: linear pair in the x and y equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + tool_x*cos_a3 - tool_y*sin_a3
             arm_across_a2 = tool_y*cos_a3 + tool_x*sin_a3
             direction_x_a2 = arm_across_a2*y + arm_along_a2*x
@@ -741,9 +768,10 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         a4 = DEGREE*(axis_a4 - offset_a4)
         sin_a4 = sin(a4)
         cos_a4 = cos(a4)
+        link_length_3_plus_point_x = link_length_3 + point_x
         # the point seen from the last moving joint
-        tool_x = link_length_2 + link_length_3*cos_a4 + point_x*cos_a4 - point_y*sin_a4
-        tool_y = point_y*cos_a4 + link_length_3*sin_a4 + point_x*sin_a4  # the point seen from the last moving joint
+        tool_x = link_length_2 + link_length_3_plus_point_x*cos_a4 - point_y*sin_a4
+        tool_y = point_y*cos_a4 + link_length_3_plus_point_x*sin_a4  # the point seen from the last moving joint
         branch_elbow = (tool_y*cos_a3 + tool_x*sin_a3)/machine_scale
         return (branch_elbow,)
 

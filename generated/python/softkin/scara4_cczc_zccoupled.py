@@ -20,9 +20,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 26 additions, 12 multiplications, 5 divisions, 0 square roots, 7 sines
-    inverse: 92 additions, 78 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 151 additions, 111 multiplications, 35 divisions, 8 square roots, 10 sines
+    forward: 21 additions, 10 multiplications, 3 divisions, 0 square roots, 7 sines
+    inverse: 87 additions, 72 multiplications, 20 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 141 additions, 99 multiplications, 31 divisions, 8 square roots, 10 sines
 
 The coupling may be given as travel per turn (pitch) or per degree (gear coupling), never both.
 
@@ -104,6 +104,15 @@ class Constants(NamedTuple):
     mid_a4: float
     machine_scale: float
     scale_a2: float
+    part_of_constant: float
+    part_of_z: float
+    scale_a2_squared_times_rounding: float
+    machine_scale_times_free_angle: float
+    link_length_1_plus_link_length_2: float
+    link_length_1_minus_link_length_2: float
+    part_of_constant_2: float
+    link_length_1_times_shortest_link: float
+    twice_link_length_1: float
 
 
 class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
@@ -365,6 +374,15 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         machine_scale = link_length_1 + link_length_2  # a length of the machine
         scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
+        part_of_constant = -1.0 if flange_down else 1.0
+        part_of_z = (gear_coupling - pitch_zc/360.0)/DEGREE
+        scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
+        machine_scale_times_free_angle = 1e-11*machine_scale
+        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        part_of_constant_2 = pitch_zc/(360.0*DEGREE) - gear_coupling/DEGREE
+        link_length_1_times_shortest_link = 1e-9*link_length_1
+        twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, pitch_zc=pitch_zc, gear_coupling=gear_coupling,
             flange_down=flange_down, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
@@ -375,21 +393,28 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
             lower_a4=effective_lower_a4, upper_a4=effective_upper_a4, unlimited_a4=unlimited_a4, lowest_a4=lowest_a4,
             highest_a4=highest_a4, single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale, scale_a2=scale_a2,
+            part_of_constant=part_of_constant, part_of_z=part_of_z,
+            scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
+            link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
+            part_of_constant_2=part_of_constant_2,
+            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
+            twice_link_length_1=twice_link_length_1,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        flange_down = k.flange_down
-        gear_coupling = k.gear_coupling
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        pitch_zc = k.pitch_zc
+        part_of_constant = k.part_of_constant
+        part_of_z = k.part_of_z
         # numbers of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
@@ -398,23 +423,25 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
-        cos_a12 = cos(a1 + a2)
+        a1_plus_a2 = a1 + a2
+        cos_a12 = cos(a1_plus_a2)
         x = link_length_1*cos_a1 + link_length_2*cos_a12
         sin_a1 = sin(a1)
-        sin_a12 = sin(a1 + a2)
+        sin_a12 = sin(a1_plus_a2)
         y = link_length_1*sin_a1 + link_length_2*sin_a12
         a3 = axis_a3 - offset_a3
         a4 = DEGREE*(axis_a4 - offset_a4)
-        z = a3 + a4*gear_coupling/DEGREE - a4*pitch_zc/(360.0*DEGREE)
-        cos_a124 = cos(a1 + a2 + a4)
-        sin_a124 = sin(a1 + a2 + a4)
+        z = a3 + a4*part_of_z
+        a1_plus_a2_plus_a4 = a1_plus_a2 + a4
+        cos_a124 = cos(a1_plus_a2_plus_a4)
+        sin_a124 = sin(a1_plus_a2_plus_a4)
         sin_a2 = sin(a2)
         return (
             (x, y, z),
             (
-                (cos_a124, -(-1.0 if flange_down else 1.0)*sin_a124, 0.0),
-                (sin_a124, (-1.0 if flange_down else 1.0)*cos_a124, 0.0),
-                (0.0, 0.0, (-1.0 if flange_down else 1.0)),
+                (cos_a124, -part_of_constant*sin_a124, 0.0),
+                (sin_a124, part_of_constant*cos_a124, 0.0),
+                (0.0, 0.0, part_of_constant),
             ),
             (sin_a2,),
         )
@@ -423,10 +450,10 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        flange_down = k.flange_down
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a4 = k.offset_a4
+        part_of_constant = k.part_of_constant
         # numbers of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
@@ -435,12 +462,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         a1 = DEGREE*(axis_a1 - offset_a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
         a4 = DEGREE*(axis_a4 - offset_a4)
-        cos_a124 = cos(a1 + a2 + a4)
-        sin_a124 = sin(a1 + a2 + a4)
+        a1_plus_a2_plus_a4 = a1 + a2 + a4
+        cos_a124 = cos(a1_plus_a2_plus_a4)
+        sin_a124 = sin(a1_plus_a2_plus_a4)
         return (
-            (cos_a124, -(-1.0 if flange_down else 1.0)*sin_a124, 0.0),
-            (sin_a124, (-1.0 if flange_down else 1.0)*cos_a124, 0.0),
-            (0.0, 0.0, (-1.0 if flange_down else 1.0)),
+            (cos_a124, -part_of_constant*sin_a124, 0.0),
+            (sin_a124, part_of_constant*cos_a124, 0.0),
+            (0.0, 0.0, part_of_constant),
         )
 
     def _branch(
@@ -454,10 +482,11 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self._constants
         flange_down = k.flange_down
-        gear_coupling = k.gear_coupling
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a4 = k.mid_a4
@@ -465,8 +494,8 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        pitch_zc = k.pitch_zc
-        scale_a2 = k.scale_a2
+        part_of_z = k.part_of_z
+        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a4 = k.single_a4
@@ -489,16 +518,18 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*scale_a2*scale_a2):
+        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
             missing = (
-                0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
-                + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
-                - link_length_1 - link_length_2 - reach
+                0.5*(
+                    abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
+                    + abs(link_length_1_plus_link_length_2 - reach) + abs(link_length_1_plus_link_length_2 + reach)
+                )
+                - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
@@ -506,7 +537,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         # a1: linear pair in the x and y equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             direction_x_a1 = arm_across_a1*y + arm_along_a1*x
@@ -535,7 +566,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc/(360.0*DEGREE) - a4*gear_coupling/DEGREE  # a3: affine in the z equation
+        a3 = z - a4*part_of_z  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
@@ -611,12 +642,11 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        gear_coupling = k.gear_coupling
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        pitch_zc = k.pitch_zc
+        part_of_constant_2 = k.part_of_constant_2
         # numbers of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
@@ -624,37 +654,39 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
-        sin_a12 = sin(a1 + a2)
         cos_a1 = cos(a1)
-        cos_a12 = cos(a1 + a2)
+        a2 = DEGREE*(axis_a2 - offset_a2)
+        a1_plus_a2 = a1 + a2
+        cos_a12 = cos(a1_plus_a2)
+        cos_a12_times_link_length_2 = link_length_2*cos_a12
+        sin_a12 = sin(a1_plus_a2)
+        link_length_2_times_sin_a12 = link_length_2*sin_a12
         return (
-            (-link_length_1*sin_a1 - link_length_2*sin_a12, -link_length_2*sin_a12, 0.0, 0.0),
-            (link_length_1*cos_a1 + link_length_2*cos_a12, link_length_2*cos_a12, 0.0, 0.0),
-            (0.0, 0.0, 1.0, gear_coupling/DEGREE - pitch_zc/(360.0*DEGREE)),
+            (-link_length_2_times_sin_a12 - link_length_1*sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
+            (cos_a12_times_link_length_2 + link_length_1*cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
+            (0.0, 0.0, 1.0, -part_of_constant_2),
             (1.0, 1.0, 0.0, 1.0),
         )
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         k = self._constants
-        flange_down = k.flange_down
+        part_of_constant = k.part_of_constant
         return (
-            ((1.0, 0.0, 0.0), (0.0, (-1.0 if flange_down else 1.0), 0.0), (0.0, 0.0, (-1.0 if flange_down else 1.0))),
+            ((1.0, 0.0, 0.0), (0.0, part_of_constant, 0.0), (0.0, 0.0, part_of_constant)),
             (0.0, 0.0, 1.0),
-            (0.0, 0.0, (-1.0 if flange_down else 1.0)),
+            (0.0, 0.0, part_of_constant),
         )
 
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        gear_coupling = k.gear_coupling
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        pitch_zc = k.pitch_zc
+        part_of_constant_2 = k.part_of_constant_2
         # numbers of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
@@ -662,14 +694,17 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
-        sin_a12 = sin(a1 + a2)
         cos_a1 = cos(a1)
-        cos_a12 = cos(a1 + a2)
+        a2 = DEGREE*(axis_a2 - offset_a2)
+        a1_plus_a2 = a1 + a2
+        cos_a12 = cos(a1_plus_a2)
+        cos_a12_times_link_length_2 = link_length_2*cos_a12
+        sin_a12 = sin(a1_plus_a2)
+        link_length_2_times_sin_a12 = link_length_2*sin_a12
         return (
-            (-link_length_1*sin_a1 - link_length_2*sin_a12, -link_length_2*sin_a12, 0.0, 0.0),
-            (link_length_1*cos_a1 + link_length_2*cos_a12, link_length_2*cos_a12, 0.0, 0.0),
-            (0.0, 0.0, 1.0, gear_coupling/DEGREE - pitch_zc/(360.0*DEGREE)),
+            (-link_length_2_times_sin_a12 - link_length_1*sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
+            (cos_a12_times_link_length_2 + link_length_1*cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
+            (0.0, 0.0, 1.0, -part_of_constant_2),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 1.0, 0.0, 1.0),
@@ -680,6 +715,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         (r11, r12, _), (r21, r22, _), _ = rotation
         k = self._constants
         flange_down = k.flange_down
+        part_of_constant = k.part_of_constant
         # projection: the tool direction swings to the machine's, the twist is kept
         if flange_down:
             heading_along = r11 - r22
@@ -691,13 +727,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
+        cos_heading = heading_along/heading_length
+        sin_heading = heading_across/heading_length
         return (
-            (cos_heading, -(-1.0 if flange_down else 1.0)*sin_heading, 0.0),
-            (sin_heading, (-1.0 if flange_down else 1.0)*cos_heading, 0.0),
-            (0.0, 0.0, (-1.0 if flange_down else 1.0)),
+            (cos_heading, -part_of_constant*sin_heading, 0.0),
+            (sin_heading, part_of_constant*cos_heading, 0.0),
+            (0.0, 0.0, part_of_constant),
         )
 
     def _offset_branch(
@@ -711,19 +746,20 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self._constants
         flange_down = k.flange_down
-        gear_coupling = k.gear_coupling
         link_length_1 = k.link_length_1
+        link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
         link_length_2 = k.link_length_2
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        pitch_zc = k.pitch_zc
+        part_of_z = k.part_of_z
         single_a1 = k.single_a1
         single_a2 = k.single_a2
+        twice_link_length_1 = k.twice_link_length_1
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -734,38 +770,49 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         free_a4 = (ref_a4 - offset_a4)*DEGREE
         cos_a4 = cos(free_a4)
         sin_a4 = sin(free_a4)
+        point_y_times_sin_a4 = -point_y*sin_a4
         # the point seen from the last moving joint
-        tool_x = link_length_2 + (2.0*point_y*sin_a4 if flange_down else 0.0) + point_x*cos_a4 - point_y*sin_a4
+        tool_x = (
+            link_length_2 + point_y_times_sin_a4 + (-2.0*point_y_times_sin_a4 if flange_down else 0.0)
+            + point_x*cos_a4
+        )
+        point_x_times_sin_a4 = -point_x*sin_a4
+        cos_a4_times_point_y = point_y*cos_a4
         # the point seen from the last moving joint
-        tool_y = point_x*sin_a4 - point_y*cos_a4 if flange_down else point_y*cos_a4 + point_x*sin_a4
+        tool_y = (
+            -cos_a4_times_point_y - point_x_times_sin_a4
+            if flange_down
+            else cos_a4_times_point_y - point_x_times_sin_a4
+        )
         effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*link_length_1):
+        if not (effective_a2 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_1 else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*link_length_1  # a2: law of cosines in the x² + y² equation
+        swing_scale_a2 = effective_a2*twice_link_length_1  # a2: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (divisor_a2 + link_length_1 + reach)*(divisor_a2 + link_length_1 - reach)
+        one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach)*(effective_a2 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_1 + reach - divisor_a2)*(divisor_a2 + reach - link_length_1)
+        one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2)*(effective_a2 - link_length_1_minus_reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             missing = (
-                0.5*abs(link_length_1 + reach - divisor_a2) + 0.5*abs(divisor_a2 + reach - link_length_1)
-                + 0.5*abs(divisor_a2 + link_length_1 - reach) + 0.5*abs(divisor_a2 + link_length_1 + reach) - divisor_a2
-                - link_length_1 - reach
+                0.5*abs(effective_a2 - link_length_1_minus_reach) + 0.5*abs(effective_a2 + link_length_1_minus_reach)
+                + 0.5*abs(effective_a2 - link_length_1_plus_reach) + 0.5*abs(effective_a2 + link_length_1_plus_reach)
+                - effective_a2 - link_length_1 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
-        cos_a2 = tool_x*cos_swing_a2/divisor_a2 + tool_y*sin_swing_a2/divisor_a2
-        sin_a2 = tool_x*sin_swing_a2/divisor_a2 - tool_y*cos_swing_a2/divisor_a2
+        cos_a2 = (tool_x*cos_swing_a2 + tool_y*sin_swing_a2)/effective_a2
+        sin_a2 = (tool_x*sin_swing_a2 - tool_y*cos_swing_a2)/effective_a2
         # a1: linear pair in the x and y equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
             arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
             direction_x_a1 = arm_across_a1*y + arm_along_a1*x
@@ -785,10 +832,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # the point seen from the last moving joint
-        tool_z = (
-            point_z + (-2.0*point_z if flange_down else 0.0) + free_a4*gear_coupling/DEGREE
-            - free_a4*pitch_zc/(360.0*DEGREE)
-        )
+        tool_z = point_z + (-2.0*point_z if flange_down else 0.0) + free_a4*part_of_z
         a3 = z - tool_z  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, ref_a4)
@@ -813,12 +857,21 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
         a4 = DEGREE*(axis_a4 - offset_a4)
-        sin_a4 = sin(a4)
         cos_a4 = cos(a4)
+        sin_a4 = sin(a4)
+        point_y_times_sin_a4 = point_y*sin_a4
         # the point seen from the last moving joint
-        tool_x = link_length_2 + (2.0*point_y*sin_a4 if flange_down else 0.0) + point_x*cos_a4 - point_y*sin_a4
+        tool_x = (
+            link_length_2 + (2.0*point_y_times_sin_a4 if flange_down else 0.0) + point_x*cos_a4 - point_y_times_sin_a4
+        )
+        point_x_times_sin_a4 = point_x*sin_a4
+        cos_a4_times_point_y = point_y*cos_a4
         # the point seen from the last moving joint
-        tool_y = point_x*sin_a4 - point_y*cos_a4 if flange_down else point_y*cos_a4 + point_x*sin_a4
+        tool_y = (
+            point_x_times_sin_a4 - cos_a4_times_point_y
+            if flange_down
+            else cos_a4_times_point_y + point_x_times_sin_a4
+        )
         branch_elbow = (tool_y*cos_a2 + tool_x*sin_a2)/machine_scale
         return (branch_elbow,)
 

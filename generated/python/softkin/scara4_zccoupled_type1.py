@@ -19,9 +19,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 25 additions, 9 multiplications, 4 divisions, 0 square roots, 7 sines
-    inverse: 89 additions, 77 multiplications, 21 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 145 additions, 109 multiplications, 33 divisions, 8 square roots, 10 sines
+    forward: 21 additions, 8 multiplications, 3 divisions, 0 square roots, 7 sines
+    inverse: 85 additions, 72 multiplications, 20 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 137 additions, 99 multiplications, 31 divisions, 8 square roots, 10 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -97,6 +97,13 @@ class Constants(NamedTuple):
     mid_a4: float
     machine_scale: float
     scale_a2: float
+    part_of_z: float
+    scale_a2_squared_times_rounding: float
+    machine_scale_times_free_angle: float
+    link_length_1_plus_link_length_2: float
+    link_length_1_minus_link_length_2: float
+    link_length_1_times_shortest_link: float
+    twice_link_length_1: float
 
 
 class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
@@ -332,6 +339,13 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         machine_scale = link_length_1 + link_length_2  # a length of the machine
         scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
+        part_of_z = pitch_zc/(360.0*DEGREE)
+        scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
+        machine_scale_times_free_angle = 1e-11*machine_scale
+        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        link_length_1_times_shortest_link = 1e-9*link_length_1
+        twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, pitch_zc=pitch_zc, offset_a1=offset_a1,
             offset_a2=offset_a2, offset_a3=offset_a3, offset_a4=offset_a4, check_limits=check_limits,
@@ -341,7 +355,13 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3, upper_a3=effective_upper_a3,
             unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3, lower_a4=effective_lower_a4,
             upper_a4=effective_upper_a4, unlimited_a4=unlimited_a4, lowest_a4=lowest_a4, highest_a4=highest_a4,
-            single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale, scale_a2=scale_a2,
+            single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale, scale_a2=scale_a2, part_of_z=part_of_z,
+            scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
+            link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
+            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
+            twice_link_length_1=twice_link_length_1,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -354,7 +374,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        pitch_zc = k.pitch_zc
+        part_of_z = k.part_of_z
         # numbers of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
@@ -363,16 +383,18 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
-        cos_a12 = cos(a1 + a2)
+        a1_plus_a2 = a1 + a2
+        cos_a12 = cos(a1_plus_a2)
         x = link_length_1*cos_a1 + link_length_2*cos_a12
         sin_a1 = sin(a1)
-        sin_a12 = sin(a1 + a2)
+        sin_a12 = sin(a1_plus_a2)
         y = link_length_1*sin_a1 + link_length_2*sin_a12
         a3 = axis_a3 - offset_a3
         a4 = DEGREE*(axis_a4 - offset_a4)
-        z = a3 - a4*pitch_zc/(360.0*DEGREE)
-        cos_a124 = cos(a1 + a2 + a4)
-        sin_a124 = sin(a1 + a2 + a4)
+        z = a3 - a4*part_of_z
+        a1_plus_a2_plus_a4 = a1_plus_a2 + a4
+        cos_a124 = cos(a1_plus_a2_plus_a4)
+        sin_a124 = sin(a1_plus_a2_plus_a4)
         sin_a2 = sin(a2)
         return ((x, y, z), ((cos_a124, -sin_a124, 0.0), (sin_a124, cos_a124, 0.0), (0.0, 0.0, 1.0)), (sin_a2,))
 
@@ -391,8 +413,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         a1 = DEGREE*(axis_a1 - offset_a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
         a4 = DEGREE*(axis_a4 - offset_a4)
-        cos_a124 = cos(a1 + a2 + a4)
-        sin_a124 = sin(a1 + a2 + a4)
+        a1_plus_a2_plus_a4 = a1 + a2 + a4
+        cos_a124 = cos(a1_plus_a2_plus_a4)
+        sin_a124 = sin(a1_plus_a2_plus_a4)
         return ((cos_a124, -sin_a124, 0.0), (sin_a124, cos_a124, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
@@ -406,8 +429,10 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self._constants
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a4 = k.mid_a4
@@ -415,8 +440,8 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        pitch_zc = k.pitch_zc
-        scale_a2 = k.scale_a2
+        part_of_z = k.part_of_z
+        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a4 = k.single_a4
@@ -434,16 +459,18 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*scale_a2*scale_a2):
+        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
             missing = (
-                0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
-                + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
-                - link_length_1 - link_length_2 - reach
+                0.5*(
+                    abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
+                    + abs(link_length_1_plus_link_length_2 - reach) + abs(link_length_1_plus_link_length_2 + reach)
+                )
+                - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
@@ -451,7 +478,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         # a1: linear pair in the x and y equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             direction_x_a1 = arm_across_a1*y + arm_along_a1*x
@@ -480,7 +507,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc/(360.0*DEGREE)  # a3: affine in the z equation
+        a3 = z + a4*part_of_z  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
@@ -560,7 +587,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         link_length_2 = k.link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        pitch_zc = k.pitch_zc
+        part_of_z = k.part_of_z
         # numbers of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
@@ -568,14 +595,17 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
-        sin_a12 = sin(a1 + a2)
         cos_a1 = cos(a1)
-        cos_a12 = cos(a1 + a2)
+        a2 = DEGREE*(axis_a2 - offset_a2)
+        a1_plus_a2 = a1 + a2
+        cos_a12 = cos(a1_plus_a2)
+        cos_a12_times_link_length_2 = link_length_2*cos_a12
+        sin_a12 = sin(a1_plus_a2)
+        link_length_2_times_sin_a12 = link_length_2*sin_a12
         return (
-            (-link_length_1*sin_a1 - link_length_2*sin_a12, -link_length_2*sin_a12, 0.0, 0.0),
-            (link_length_1*cos_a1 + link_length_2*cos_a12, link_length_2*cos_a12, 0.0, 0.0),
-            (0.0, 0.0, 1.0, -pitch_zc/(360.0*DEGREE)),
+            (-link_length_2_times_sin_a12 - link_length_1*sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
+            (cos_a12_times_link_length_2 + link_length_1*cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
+            (0.0, 0.0, 1.0, -part_of_z),
             (1.0, 1.0, 0.0, 1.0),
         )
 
@@ -591,7 +621,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         link_length_2 = k.link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        pitch_zc = k.pitch_zc
+        part_of_z = k.part_of_z
         # numbers of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
@@ -599,14 +629,17 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
-        sin_a12 = sin(a1 + a2)
         cos_a1 = cos(a1)
-        cos_a12 = cos(a1 + a2)
+        a2 = DEGREE*(axis_a2 - offset_a2)
+        a1_plus_a2 = a1 + a2
+        cos_a12 = cos(a1_plus_a2)
+        cos_a12_times_link_length_2 = link_length_2*cos_a12
+        sin_a12 = sin(a1_plus_a2)
+        link_length_2_times_sin_a12 = link_length_2*sin_a12
         return (
-            (-link_length_1*sin_a1 - link_length_2*sin_a12, -link_length_2*sin_a12, 0.0, 0.0),
-            (link_length_1*cos_a1 + link_length_2*cos_a12, link_length_2*cos_a12, 0.0, 0.0),
-            (0.0, 0.0, 1.0, -pitch_zc/(360.0*DEGREE)),
+            (-link_length_2_times_sin_a12 - link_length_1*sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
+            (cos_a12_times_link_length_2 + link_length_1*cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
+            (0.0, 0.0, 1.0, -part_of_z),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 1.0, 0.0, 1.0),
@@ -621,9 +654,8 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
+        cos_heading = heading_along/heading_length
+        sin_heading = heading_across/heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
@@ -637,17 +669,19 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self._constants
         link_length_1 = k.link_length_1
+        link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
         link_length_2 = k.link_length_2
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        pitch_zc = k.pitch_zc
+        part_of_z = k.part_of_z
         single_a1 = k.single_a1
         single_a2 = k.single_a2
+        twice_link_length_1 = k.twice_link_length_1
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -662,32 +696,33 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         tool_y = point_y*cos_a4 + point_x*sin_a4  # the point seen from the last moving joint
         effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*link_length_1):
+        if not (effective_a2 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_1 else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*link_length_1  # a2: law of cosines in the x² + y² equation
+        swing_scale_a2 = effective_a2*twice_link_length_1  # a2: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (divisor_a2 + link_length_1 + reach)*(divisor_a2 + link_length_1 - reach)
+        one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach)*(effective_a2 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_1 + reach - divisor_a2)*(divisor_a2 + reach - link_length_1)
+        one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2)*(effective_a2 - link_length_1_minus_reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             missing = (
-                0.5*abs(link_length_1 + reach - divisor_a2) + 0.5*abs(divisor_a2 + reach - link_length_1)
-                + 0.5*abs(divisor_a2 + link_length_1 - reach) + 0.5*abs(divisor_a2 + link_length_1 + reach) - divisor_a2
-                - link_length_1 - reach
+                0.5*abs(effective_a2 - link_length_1_minus_reach) + 0.5*abs(effective_a2 + link_length_1_minus_reach)
+                + 0.5*abs(effective_a2 - link_length_1_plus_reach) + 0.5*abs(effective_a2 + link_length_1_plus_reach)
+                - effective_a2 - link_length_1 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
-        cos_a2 = tool_x*cos_swing_a2/divisor_a2 + tool_y*sin_swing_a2/divisor_a2
-        sin_a2 = tool_x*sin_swing_a2/divisor_a2 - tool_y*cos_swing_a2/divisor_a2
+        cos_a2 = (tool_x*cos_swing_a2 + tool_y*sin_swing_a2)/effective_a2
+        sin_a2 = (tool_x*sin_swing_a2 - tool_y*cos_swing_a2)/effective_a2
         # a1: linear pair in the x and y equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
             arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
             direction_x_a1 = arm_across_a1*y + arm_along_a1*x
@@ -706,7 +741,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        tool_z = point_z - free_a4*pitch_zc/(360.0*DEGREE)  # the point seen from the last moving joint
+        tool_z = point_z - free_a4*part_of_z  # the point seen from the last moving joint
         a3 = z - tool_z  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, ref_a4)

@@ -19,9 +19,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 28 additions, 12 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 109 additions, 96 multiplications, 30 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 179 additions, 141 multiplications, 49 divisions, 8 square roots, 10 sines
+    forward: 24 additions, 12 multiplications, 3 divisions, 0 square roots, 7 sines
+    inverse: 103 additions, 88 multiplications, 26 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 167 additions, 125 multiplications, 41 divisions, 8 square roots, 10 sines
 
 A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.
 
@@ -111,6 +111,19 @@ class Constants(NamedTuple):
     highest_joint_3: float
     machine_scale: float
     scale_a2: float
+    machine_scale_times_plane: float
+    scale_a2_squared_times_rounding: float
+    machine_scale_times_free_angle: float
+    link_length_1_plus_link_length_2: float
+    link_length_1_minus_link_length_2: float
+    part_of_open_a2: float
+    coupling_12_plus_coupling_13_plus_one: float
+    coupling_23_plus_one: float
+    part_of_constant: float
+    part_of_constant_2: float
+    part_of_constant_3: float
+    link_length_1_times_shortest_link: float
+    twice_link_length_1: float
 
 
 class SCCC(OffsetKinematics, TwistChoice):
@@ -381,6 +394,19 @@ class SCCC(OffsetKinematics, TwistChoice):
         highest_joint_3 = 1e12 if unlimited_joint_3 else effective_upper_joint_3 + tolerance_joint_3
         machine_scale = link_length_1 + link_length_2 + link_length_3  # a length of the machine
         scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
+        machine_scale_times_plane = 1e-6*machine_scale
+        scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
+        machine_scale_times_free_angle = 1e-11*machine_scale
+        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        part_of_open_a2 = coupling_12/DEGREE
+        coupling_12_plus_coupling_13_plus_one = 1.0 + coupling_12 + coupling_13
+        coupling_23_plus_one = 1.0 + coupling_23
+        part_of_constant = link_length_3 + (coupling_12 + coupling_13)*link_length_3
+        part_of_constant_2 = link_length_2 + coupling_12*link_length_2
+        part_of_constant_3 = link_length_3 + coupling_23*link_length_3
+        link_length_1_times_shortest_link = 1e-9*link_length_1
+        twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, link_length_3=link_length_3,
             coupling_12=coupling_12, coupling_13=coupling_13, coupling_23=coupling_23, offset_a1=offset_a1,
@@ -394,6 +420,16 @@ class SCCC(OffsetKinematics, TwistChoice):
             highest_joint_2=highest_joint_2, lower_joint_3=effective_lower_joint_3,
             upper_joint_3=effective_upper_joint_3, unlimited_joint_3=unlimited_joint_3, lowest_joint_3=lowest_joint_3,
             highest_joint_3=highest_joint_3, machine_scale=machine_scale, scale_a2=scale_a2,
+            machine_scale_times_plane=machine_scale_times_plane,
+            scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
+            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
+            link_length_1_minus_link_length_2=link_length_1_minus_link_length_2, part_of_open_a2=part_of_open_a2,
+            coupling_12_plus_coupling_13_plus_one=coupling_12_plus_coupling_13_plus_one,
+            coupling_23_plus_one=coupling_23_plus_one, part_of_constant=part_of_constant,
+            part_of_constant_2=part_of_constant_2, part_of_constant_3=part_of_constant_3,
+            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
+            twice_link_length_1=twice_link_length_1,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -413,17 +449,19 @@ class SCCC(OffsetKinematics, TwistChoice):
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
-        cos_a1 = cos(a1)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         a2 = motor_a2 + a1*coupling_12
-        cos_a12 = cos(a1 + a2)
+        a1_plus_a2 = a1 + a2
         motor_a3 = DEGREE*(axis_a3 - offset_a3)
         a3 = motor_a3 + a1*coupling_13 + coupling_23*motor_a2
-        cos_a123 = cos(a1 + a2 + a3)
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        cos_a123 = cos(a1_plus_a2_plus_a3)
+        cos_a1 = cos(a1)
+        cos_a12 = cos(a1_plus_a2)
         x = link_length_1*cos_a1 + link_length_2*cos_a12 + link_length_3*cos_a123
+        sin_a123 = sin(a1_plus_a2_plus_a3)
         sin_a1 = sin(a1)
-        sin_a12 = sin(a1 + a2)
-        sin_a123 = sin(a1 + a2 + a3)
+        sin_a12 = sin(a1_plus_a2)
         y = link_length_1*sin_a1 + link_length_2*sin_a12 + link_length_3*sin_a123
         sin_a2 = sin(a2)
         return ((x, y, 0.0), ((cos_a123, -sin_a123, 0.0), (sin_a123, cos_a123, 0.0), (0.0, 0.0, 1.0)), (sin_a2,))
@@ -446,8 +484,9 @@ class SCCC(OffsetKinematics, TwistChoice):
         a2 = motor_a2 + a1*coupling_12
         motor_a3 = DEGREE*(axis_a3 - offset_a3)
         a3 = motor_a3 + a1*coupling_13 + coupling_23*motor_a2
-        cos_a123 = cos(a1 + a2 + a3)
-        sin_a123 = sin(a1 + a2 + a3)
+        a1_plus_a2_plus_a3 = a1 + a2 + a3
+        cos_a123 = cos(a1_plus_a2_plus_a3)
+        sin_a123 = sin(a1_plus_a2_plus_a3)
         return ((cos_a123, -sin_a123, 0.0), (sin_a123, cos_a123, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
@@ -464,16 +503,20 @@ class SCCC(OffsetKinematics, TwistChoice):
         coupling_13 = k.coupling_13
         coupling_23 = k.coupling_23
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        scale_a2 = k.scale_a2
+        part_of_open_a2 = k.part_of_open_a2
+        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -490,26 +533,27 @@ class SCCC(OffsetKinematics, TwistChoice):
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         # z: a planar machine has none
-        if not (abs(z) <= 1e-6*machine_scale):
-            missing = abs(z) - 1e-6*machine_scale
+        if not (abs(z) <= machine_scale_times_plane):
+            missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
+        cos_heading = heading_along/heading_length
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
-        sin_heading = heading_across/heading_divisor
+        sin_heading = heading_across/heading_length
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*scale_a2*scale_a2):
+        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
             missing = (
-                0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
-                + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
-                - link_length_1 - link_length_2 - reach
+                0.5*(
+                    abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
+                    + abs(link_length_1_plus_link_length_2 - reach) + abs(link_length_1_plus_link_length_2 + reach)
+                )
+                - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
@@ -517,7 +561,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         # a1: linear pair in the x and y equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
@@ -534,20 +578,21 @@ class SCCC(OffsetKinematics, TwistChoice):
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
+        part_of_axis_a2 = offset_a2 - motor_a1*part_of_open_a2
         if turn_a2 != 0:
             near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
-            # A2: where its turn is open
-            open_a2 = mid_a2 if single_a2 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
+            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2/DEGREE  # A2: where its turn is open
             near_a2 = open_a2
-        axis_a2 = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
+        axis_a2 = part_of_axis_a2 + angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
+        part_of_axis_a3 = -coupling_13*motor_a1 - coupling_23*motor_a2
         if turn_a3 != 0:
             near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3)
         else:
@@ -559,13 +604,10 @@ class SCCC(OffsetKinematics, TwistChoice):
             else:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3 = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE
+                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE
             near_a3 = open_a3
         # a3: what the sum a123 leaves; A3: its turn
-        axis_a3 = (
-            offset_a3 + (angle_heading - angle_a1 - angle_a2)/DEGREE
-            - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE
-        )
+        axis_a3 = offset_a3 + (angle_heading + part_of_axis_a3 - angle_a1 - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -699,14 +741,19 @@ class SCCC(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         coupling_12 = k.coupling_12
+        coupling_12_plus_coupling_13_plus_one = k.coupling_12_plus_coupling_13_plus_one
         coupling_13 = k.coupling_13
         coupling_23 = k.coupling_23
+        coupling_23_plus_one = k.coupling_23_plus_one
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_constant = k.part_of_constant
+        part_of_constant_2 = k.part_of_constant_2
+        part_of_constant_3 = k.part_of_constant_3
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
@@ -714,33 +761,25 @@ class SCCC(OffsetKinematics, TwistChoice):
         sin_a1 = sin(a1)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         a2 = motor_a2 + a1*coupling_12
-        sin_a12 = sin(a1 + a2)
+        a1_plus_a2 = a1 + a2
+        sin_a12 = sin(a1_plus_a2)
         motor_a3 = DEGREE*(axis_a3 - offset_a3)
         a3 = motor_a3 + a1*coupling_13 + coupling_23*motor_a2
-        sin_a123 = sin(a1 + a2 + a3)
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        sin_a123 = sin(a1_plus_a2_plus_a3)
         cos_a1 = cos(a1)
-        cos_a12 = cos(a1 + a2)
-        cos_a123 = cos(a1 + a2 + a3)
+        cos_a12 = cos(a1_plus_a2)
+        cos_a123 = cos(a1_plus_a2_plus_a3)
         return (
             (
-                (
-                    -link_length_1*sin_a1 - link_length_2*sin_a12 - link_length_3*sin_a123
-                    - coupling_12*link_length_2*sin_a12 - coupling_12*link_length_3*sin_a123
-                    - coupling_13*link_length_3*sin_a123
-                ),
-                -link_length_2*sin_a12 - link_length_3*sin_a123 - coupling_23*link_length_3*sin_a123,
-                -link_length_3*sin_a123,
+                -link_length_1*sin_a1 - part_of_constant*sin_a123 - part_of_constant_2*sin_a12,
+                -link_length_2*sin_a12 - part_of_constant_3*sin_a123, -link_length_3*sin_a123,
             ),
             (
-                (
-                    link_length_1*cos_a1 + link_length_2*cos_a12 + link_length_3*cos_a123
-                    + coupling_12*link_length_2*cos_a12 + coupling_12*link_length_3*cos_a123
-                    + coupling_13*link_length_3*cos_a123
-                ),
-                link_length_2*cos_a12 + link_length_3*cos_a123 + coupling_23*link_length_3*cos_a123,
-                link_length_3*cos_a123,
+                link_length_1*cos_a1 + part_of_constant_2*cos_a12 + part_of_constant*cos_a123,
+                link_length_2*cos_a12 + part_of_constant_3*cos_a123, link_length_3*cos_a123,
             ),
-            (1.0 + coupling_12 + coupling_13, 1.0 + coupling_23, 1.0),
+            (coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, 1.0),
         )
 
     def _image(self) -> Image | Status:
@@ -752,14 +791,19 @@ class SCCC(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         coupling_12 = k.coupling_12
+        coupling_12_plus_coupling_13_plus_one = k.coupling_12_plus_coupling_13_plus_one
         coupling_13 = k.coupling_13
         coupling_23 = k.coupling_23
+        coupling_23_plus_one = k.coupling_23_plus_one
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_constant = k.part_of_constant
+        part_of_constant_2 = k.part_of_constant_2
+        part_of_constant_3 = k.part_of_constant_3
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
@@ -767,36 +811,28 @@ class SCCC(OffsetKinematics, TwistChoice):
         sin_a1 = sin(a1)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         a2 = motor_a2 + a1*coupling_12
-        sin_a12 = sin(a1 + a2)
+        a1_plus_a2 = a1 + a2
+        sin_a12 = sin(a1_plus_a2)
         motor_a3 = DEGREE*(axis_a3 - offset_a3)
         a3 = motor_a3 + a1*coupling_13 + coupling_23*motor_a2
-        sin_a123 = sin(a1 + a2 + a3)
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        sin_a123 = sin(a1_plus_a2_plus_a3)
         cos_a1 = cos(a1)
-        cos_a12 = cos(a1 + a2)
-        cos_a123 = cos(a1 + a2 + a3)
+        cos_a12 = cos(a1_plus_a2)
+        cos_a123 = cos(a1_plus_a2_plus_a3)
         return (
             (
-                (
-                    -link_length_1*sin_a1 - link_length_2*sin_a12 - link_length_3*sin_a123
-                    - coupling_12*link_length_2*sin_a12 - coupling_12*link_length_3*sin_a123
-                    - coupling_13*link_length_3*sin_a123
-                ),
-                -link_length_2*sin_a12 - link_length_3*sin_a123 - coupling_23*link_length_3*sin_a123,
-                -link_length_3*sin_a123,
+                -link_length_1*sin_a1 - part_of_constant*sin_a123 - part_of_constant_2*sin_a12,
+                -link_length_2*sin_a12 - part_of_constant_3*sin_a123, -link_length_3*sin_a123,
             ),
             (
-                (
-                    link_length_1*cos_a1 + link_length_2*cos_a12 + link_length_3*cos_a123
-                    + coupling_12*link_length_2*cos_a12 + coupling_12*link_length_3*cos_a123
-                    + coupling_13*link_length_3*cos_a123
-                ),
-                link_length_2*cos_a12 + link_length_3*cos_a123 + coupling_23*link_length_3*cos_a123,
-                link_length_3*cos_a123,
+                link_length_1*cos_a1 + part_of_constant_2*cos_a12 + part_of_constant*cos_a123,
+                link_length_2*cos_a12 + part_of_constant_3*cos_a123, link_length_3*cos_a123,
             ),
             (0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0),
-            (1.0 + coupling_12 + coupling_13, 1.0 + coupling_23, 1.0),
+            (coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, 1.0),
         )
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:
@@ -808,9 +844,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
+        cos_heading = heading_along/heading_length
+        sin_heading = heading_across/heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
@@ -827,16 +862,20 @@ class SCCC(OffsetKinematics, TwistChoice):
         coupling_13 = k.coupling_13
         coupling_23 = k.coupling_23
         link_length_1 = k.link_length_1
+        link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_open_a2 = k.part_of_open_a2
         single_a1 = k.single_a1
         single_a2 = k.single_a2
+        twice_link_length_1 = k.twice_link_length_1
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -845,8 +884,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
-        if not (abs(point_z - z) <= 1e-6*machine_scale):
-            missing = abs(point_z - z) - 1e-6*machine_scale
+        if not (abs(point_z - z) <= machine_scale_times_plane):
+            missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -854,37 +893,39 @@ class SCCC(OffsetKinematics, TwistChoice):
         free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
         cos_a3 = cos(free_a3)
         sin_a3 = sin(free_a3)
+        link_length_3_plus_point_x = link_length_3 + point_x
         # the point seen from the last moving joint
-        tool_x = link_length_2 + link_length_3*cos_a3 + point_x*cos_a3 - point_y*sin_a3
-        tool_y = point_y*cos_a3 + link_length_3*sin_a3 + point_x*sin_a3  # the point seen from the last moving joint
+        tool_x = link_length_2 + link_length_3_plus_point_x*cos_a3 - point_y*sin_a3
+        tool_y = point_y*cos_a3 + link_length_3_plus_point_x*sin_a3  # the point seen from the last moving joint
         effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*link_length_1):
+        if not (effective_a2 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_1 else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*link_length_1  # a2: law of cosines in the x² + y² equation
+        swing_scale_a2 = effective_a2*twice_link_length_1  # a2: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (divisor_a2 + link_length_1 + reach)*(divisor_a2 + link_length_1 - reach)
+        one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach)*(effective_a2 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_1 + reach - divisor_a2)*(divisor_a2 + reach - link_length_1)
+        one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2)*(effective_a2 - link_length_1_minus_reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             missing = (
-                0.5*abs(link_length_1 + reach - divisor_a2) + 0.5*abs(divisor_a2 + reach - link_length_1)
-                + 0.5*abs(divisor_a2 + link_length_1 - reach) + 0.5*abs(divisor_a2 + link_length_1 + reach) - divisor_a2
-                - link_length_1 - reach
+                0.5*abs(effective_a2 - link_length_1_minus_reach) + 0.5*abs(effective_a2 + link_length_1_minus_reach)
+                + 0.5*abs(effective_a2 - link_length_1_plus_reach) + 0.5*abs(effective_a2 + link_length_1_plus_reach)
+                - effective_a2 - link_length_1 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
-        cos_a2 = tool_x*cos_swing_a2/divisor_a2 + tool_y*sin_swing_a2/divisor_a2
-        sin_a2 = tool_x*sin_swing_a2/divisor_a2 - tool_y*cos_swing_a2/divisor_a2
+        cos_a2 = (tool_x*cos_swing_a2 + tool_y*sin_swing_a2)/effective_a2
+        sin_a2 = (tool_x*sin_swing_a2 - tool_y*cos_swing_a2)/effective_a2
         # a1: linear pair in the x and y equations; its reference where it is free
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
             arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
             direction_x_a1 = arm_across_a1*y + arm_along_a1*x
@@ -898,18 +939,18 @@ class SCCC(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
+        part_of_axis_a2 = offset_a2 - motor_a1*part_of_open_a2
         if turn_a2 != 0:
             near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
             free_a2 = ref_motor_a2 + coupling_12*free_a1
-            # A2: where its turn is open
-            open_a2 = mid_a2 if single_a2 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
+            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2/DEGREE  # A2: where its turn is open
             near_a2 = open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
+        axis_a2 = part_of_axis_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        axis_a3 = offset_a3 + free_a3/DEGREE - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE
+        axis_a3 = offset_a3 + (free_a3 - coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE
         return (axis_a1, axis_a2, axis_a3)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
@@ -941,9 +982,10 @@ class SCCC(OffsetKinematics, TwistChoice):
         a3 = motor_a3 + a1*coupling_13 + coupling_23*motor_a2
         sin_a3 = sin(a3)
         cos_a3 = cos(a3)
+        link_length_3_plus_point_x = link_length_3 + point_x
         # the point seen from the last moving joint
-        tool_x = link_length_2 + link_length_3*cos_a3 + point_x*cos_a3 - point_y*sin_a3
-        tool_y = point_y*cos_a3 + link_length_3*sin_a3 + point_x*sin_a3  # the point seen from the last moving joint
+        tool_x = link_length_2 + link_length_3_plus_point_x*cos_a3 - point_y*sin_a3
+        tool_y = point_y*cos_a3 + link_length_3_plus_point_x*sin_a3  # the point seen from the last moving joint
         branch_elbow = (tool_y*cos_a2 + tool_x*sin_a2)/machine_scale
         return (branch_elbow,)
 

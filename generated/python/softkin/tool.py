@@ -173,11 +173,13 @@ class Tool(OrientationKinematics):
             return Status.BAD_INPUT
         # what the flange holds, along the axis that it turns about
         flange_along = flange_axis_x*tool_x + flange_axis_y*tool_y + flange_axis_z*tool_z
+        part_of_flange_offset = tool_x - flange_along*flange_axis_x
+        part_of_flange_offset_2 = tool_y - flange_along*flange_axis_y
+        part_of_flange_offset_3 = tool_z - flange_along*flange_axis_z
         # off the axis that the flange turns about
         flange_offset = sqrt(
-            (tool_x - flange_along*flange_axis_x)*(tool_x - flange_along*flange_axis_x)
-            + (tool_y - flange_along*flange_axis_y)*(tool_y - flange_along*flange_axis_y)
-            + (tool_z - flange_along*flange_axis_z)*(tool_z - flange_along*flange_axis_z)
+            part_of_flange_offset*part_of_flange_offset + part_of_flange_offset_2*part_of_flange_offset_2
+            + part_of_flange_offset_3*part_of_flange_offset_3
         )
         # a part of the end point turns with the flange
         if not (flange_offset <= unnoticed_shift):

@@ -21,9 +21,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 59 additions, 109 multiplications, 7 divisions, 13 square roots, 0 sines
-    inverse: 83 additions, 162 multiplications, 15 divisions, 26 square roots, 2 sines
-    inverse, all 8 branches open: 657 additions, 1296 multiplications, 120 divisions, 208 square roots, 16 sines
+    forward: 49 additions, 64 multiplications, 2 divisions, 1 square roots, 0 sines
+    inverse: 69 additions, 53 multiplications, 6 divisions, 5 square roots, 2 sines
+    inverse, all 8 branches open: 545 additions, 424 multiplications, 48 divisions, 40 square roots, 16 sines
 
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -94,6 +94,31 @@ class Constants(NamedTuple):
     cos_rail_angle: float
     assembly_sign: float
     sin_max_angle_ball_joint: float
+    part_of_normal_divisor: float
+    arm_length_squared: float
+    arm_length_squared_times_rounding: float
+    part_of_pivot_2_y: float
+    part_of_pivot_2_y_2: float
+    inner_radius_minus_outer_radius: float
+    half_sin_rail_angle: float
+    part_of_pivot_2_x: float
+    sin_rail_angle_times_root_of_3: float
+    twice_cos_rail_angle: float
+    half_by_arm_length: float
+    part_of_root_square_a1: float
+    sin_rail_angle_squared: float
+    cos_rail_angle_squared: float
+    part_of_root_square_a2: float
+    part_of_root_square_a2_2: float
+    cos_rail_angle_times_sin_rail_angle: float
+    sin_rail_angle_squared_times_3_by_4: float
+    sin_rail_angle_squared_times_1_by_4: float
+    part_of_type2_rods_coplanar: float
+    root_of_3_times_half_by_arm_length: float
+    part_of_margin_rods_coplanar: float
+    part_of_determinant_divisor: float
+    twice_sin_rail_angle: float
+    part_of_slope_1_by_x: float
 
 
 class TripodLinear(OffsetKinematics):
@@ -330,6 +355,32 @@ class TripodLinear(OffsetKinematics):
         cos_rail_angle = cos(DEGREE*rail_angle)
         assembly_sign = -1.0 if tcp_below else 1.0  # assembly mode of this machine
         sin_max_angle_ball_joint = sin(DEGREE*max_angle_ball_joint)
+        part_of_normal_divisor = 1e-22*arm_length*arm_length*arm_length*arm_length
+        arm_length_squared = arm_length*arm_length
+        arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
+        root_of_3 = root(3.0)
+        part_of_pivot_2_y = 0.5*root_of_3*sin_rail_angle
+        part_of_pivot_2_y_2 = 0.5*inner_radius*root_of_3 - 0.5*outer_radius*root_of_3
+        inner_radius_minus_outer_radius = inner_radius - outer_radius
+        half_sin_rail_angle = 0.5*sin_rail_angle
+        part_of_pivot_2_x = 0.5*outer_radius - 0.5*inner_radius
+        sin_rail_angle_times_root_of_3 = root_of_3*sin_rail_angle
+        twice_cos_rail_angle = 2.0*cos_rail_angle
+        half_by_arm_length = 0.5/arm_length
+        part_of_root_square_a1 = 2.0*cos_rail_angle*sin_rail_angle
+        sin_rail_angle_squared = sin_rail_angle*sin_rail_angle
+        cos_rail_angle_squared = cos_rail_angle*cos_rail_angle
+        part_of_root_square_a2 = root_of_3*cos_rail_angle*sin_rail_angle
+        part_of_root_square_a2_2 = 0.5*root_of_3*sin_rail_angle*sin_rail_angle
+        cos_rail_angle_times_sin_rail_angle = cos_rail_angle*sin_rail_angle
+        sin_rail_angle_squared_times_3_by_4 = 0.75*sin_rail_angle*sin_rail_angle
+        sin_rail_angle_squared_times_1_by_4 = 0.25*sin_rail_angle*sin_rail_angle
+        part_of_type2_rods_coplanar = assembly_sign/(arm_length*arm_length*arm_length)
+        root_of_3_times_half_by_arm_length = 0.5*root_of_3/arm_length
+        part_of_margin_rods_coplanar = arm_length*arm_length*arm_length
+        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
+        twice_sin_rail_angle = 2.0*sin_rail_angle
+        part_of_slope_1_by_x = 2.0*inner_radius - 2.0*outer_radius
         return Constants(
             outer_radius=outer_radius, inner_radius=inner_radius, arm_length=arm_length, rail_angle=rail_angle,
             max_angle_ball_joint=max_angle_ball_joint, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
@@ -340,6 +391,22 @@ class TripodLinear(OffsetKinematics):
             upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
             machine_scale=machine_scale, tie=tie, sin_rail_angle=sin_rail_angle, cos_rail_angle=cos_rail_angle,
             assembly_sign=assembly_sign, sin_max_angle_ball_joint=sin_max_angle_ball_joint,
+            part_of_normal_divisor=part_of_normal_divisor, arm_length_squared=arm_length_squared,
+            arm_length_squared_times_rounding=arm_length_squared_times_rounding, part_of_pivot_2_y=part_of_pivot_2_y,
+            part_of_pivot_2_y_2=part_of_pivot_2_y_2, inner_radius_minus_outer_radius=inner_radius_minus_outer_radius,
+            half_sin_rail_angle=half_sin_rail_angle, part_of_pivot_2_x=part_of_pivot_2_x,
+            sin_rail_angle_times_root_of_3=sin_rail_angle_times_root_of_3, twice_cos_rail_angle=twice_cos_rail_angle,
+            half_by_arm_length=half_by_arm_length, part_of_root_square_a1=part_of_root_square_a1,
+            sin_rail_angle_squared=sin_rail_angle_squared, cos_rail_angle_squared=cos_rail_angle_squared,
+            part_of_root_square_a2=part_of_root_square_a2, part_of_root_square_a2_2=part_of_root_square_a2_2,
+            cos_rail_angle_times_sin_rail_angle=cos_rail_angle_times_sin_rail_angle,
+            sin_rail_angle_squared_times_3_by_4=sin_rail_angle_squared_times_3_by_4,
+            sin_rail_angle_squared_times_1_by_4=sin_rail_angle_squared_times_1_by_4,
+            part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
+            root_of_3_times_half_by_arm_length=root_of_3_times_half_by_arm_length,
+            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
+            part_of_determinant_divisor=part_of_determinant_divisor, twice_sin_rail_angle=twice_sin_rail_angle,
+            part_of_slope_1_by_x=part_of_slope_1_by_x,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -347,21 +414,30 @@ class TripodLinear(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         arm_length = k.arm_length
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         cos_rail_angle = k.cos_rail_angle
-        inner_radius = k.inner_radius
+        half_by_arm_length = k.half_by_arm_length
+        half_sin_rail_angle = k.half_sin_rail_angle
+        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        outer_radius = k.outer_radius
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
+        sin_rail_angle_times_root_of_3 = k.sin_rail_angle_times_root_of_3
+        twice_cos_rail_angle = k.twice_cos_rail_angle
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
         a3 = axis_a3 - offset_a3
-        pivot_3_y = 0.5*root(3.0)*outer_radius + 0.5*root(3.0)*a3*sin_rail_angle - 0.5*root(3.0)*inner_radius  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
         a1 = axis_a1 - offset_a1
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         pivot_2_z = -a2*cos_rail_angle  # rod 2
@@ -369,59 +445,54 @@ class TripodLinear(OffsetKinematics):
         pivot_3_z = -a3*cos_rail_angle  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = inner_radius - outer_radius - a1*sin_rail_angle  # rod 1
-        pivot_2_x = 0.5*outer_radius + 0.5*a2*sin_rail_angle - 0.5*inner_radius  # rod 2
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = 0.5*outer_radius + 0.5*a3*sin_rail_angle - 0.5*inner_radius  # rod 3
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_z*apart_2_z + 0.5*pivot_2_y*pivot_2_y
+        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_z*apart_3_z + 0.5*pivot_3_y*pivot_3_y
+        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length*arm_length - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length*arm_length):
+        if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + normal_y*rise
         z = foot_z + pivot_1_z + normal_z*rise
-        span_1_x = outer_radius + x - inner_radius  # rod 1
+        span_1_x = x - inner_radius_minus_outer_radius  # rod 1
         branch_carriage_1 = (a1 + z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
-        span_2_x = 0.5*inner_radius + x - 0.5*outer_radius  # rod 2
-        span_2_y = y + 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*inner_radius  # rod 2
+        span_2_y = y - part_of_pivot_2_y_2  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2
+        part_of_branch_carriage_2 = span_2_x*sin_rail_angle - twice_cos_rail_angle*z
         branch_carriage_2 = (
-            0.5*(2.0*a2 + 2.0*z*cos_rail_angle + root(3.0)*span_2_y*sin_rail_angle - span_2_x*sin_rail_angle)
-            /arm_length
+            (2.0*a2 + span_2_y*sin_rail_angle_times_root_of_3 - part_of_branch_carriage_2)*half_by_arm_length
         )
-        span_3_y = y + 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius  # rod 3
+        span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         branch_carriage_3 = (
-            0.5*(2.0*a3 + 2.0*z*cos_rail_angle - span_2_x*sin_rail_angle - root(3.0)*span_3_y*sin_rail_angle)
-            /arm_length
+            (2.0*a3 - part_of_branch_carriage_2 - span_3_y*sin_rail_angle_times_root_of_3)*half_by_arm_length
         )
         return (
             (x, y, z),
@@ -433,21 +504,26 @@ class TripodLinear(OffsetKinematics):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_length = k.arm_length
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         cos_rail_angle = k.cos_rail_angle
-        inner_radius = k.inner_radius
+        half_sin_rail_angle = k.half_sin_rail_angle
+        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        outer_radius = k.outer_radius
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
         a3 = axis_a3 - offset_a3
-        pivot_3_y = 0.5*root(3.0)*outer_radius + 0.5*root(3.0)*a3*sin_rail_angle - 0.5*root(3.0)*inner_radius  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
         a1 = axis_a1 - offset_a1
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         pivot_2_z = -a2*cos_rail_angle  # rod 2
@@ -455,42 +531,38 @@ class TripodLinear(OffsetKinematics):
         pivot_3_z = -a3*cos_rail_angle  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = inner_radius - outer_radius - a1*sin_rail_angle  # rod 1
-        pivot_2_x = 0.5*outer_radius + 0.5*a2*sin_rail_angle - 0.5*inner_radius  # rod 2
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = 0.5*outer_radius + 0.5*a3*sin_rail_angle - 0.5*inner_radius  # rod 3
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_z*apart_2_z + 0.5*pivot_2_y*pivot_2_y
+        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_z*apart_3_z + 0.5*pivot_3_y*pivot_3_y
+        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length*arm_length - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length*arm_length):
+        if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -502,109 +574,122 @@ class TripodLinear(OffsetKinematics):
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self._constants
         arm_length = k.arm_length
-        assembly_sign = k.assembly_sign
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         cos_rail_angle = k.cos_rail_angle
-        inner_radius = k.inner_radius
+        cos_rail_angle_squared = k.cos_rail_angle_squared
+        cos_rail_angle_times_sin_rail_angle = k.cos_rail_angle_times_sin_rail_angle
+        half_by_arm_length = k.half_by_arm_length
+        half_sin_rail_angle = k.half_sin_rail_angle
+        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        outer_radius = k.outer_radius
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
+        part_of_root_square_a1 = k.part_of_root_square_a1
+        part_of_root_square_a2 = k.part_of_root_square_a2
+        part_of_root_square_a2_2 = k.part_of_root_square_a2_2
+        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
+        root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
         sin_rail_angle = k.sin_rail_angle
+        sin_rail_angle_squared = k.sin_rail_angle_squared
+        sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
+        sin_rail_angle_squared_times_3_by_4 = k.sin_rail_angle_squared_times_3_by_4
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = outer_radius + x - inner_radius  # rod 1
+        span_1_x = x - inner_radius_minus_outer_radius  # rod 1
+        z_minus_cos_rail_angle_squared_times_z = z - z*cos_rail_angle_squared
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length*arm_length + z*z*cos_rail_angle*cos_rail_angle + 2.0*span_1_x*z*cos_rail_angle*sin_rail_angle
-            + span_1_x*span_1_x*sin_rail_angle*sin_rail_angle - span_1_x*span_1_x - y*y - z*z
+            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z
+            - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x - y*y
         )
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a1 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    span_1_x*span_1_x + y*y + z*z - z*z*cos_rail_angle*cos_rail_angle
-                    - 2.0*span_1_x*z*cos_rail_angle*sin_rail_angle - span_1_x*span_1_x*sin_rail_angle*sin_rail_angle
+                    y*y + (z_minus_cos_rail_angle_squared_times_z - part_of_root_square_a1*span_1_x)*z
+                    - span_1_x*(span_1_x*sin_rail_angle_squared - span_1_x)
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = 0.5*inner_radius + x - 0.5*outer_radius  # rod 2
-        span_2_y = y + 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*inner_radius  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2
+        span_2_y = y - part_of_pivot_2_y_2  # rod 2
+        part_of_root_square_a2_3 = (
+            -z_minus_cos_rail_angle_squared_times_z - span_2_x*cos_rail_angle_times_sin_rail_angle
+        )
+        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length*arm_length + z*z*cos_rail_angle*cos_rail_angle
-            + 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
-            + 0.75*span_2_y*span_2_y*sin_rail_angle*sin_rail_angle
-            + root(3.0)*span_2_y*z*cos_rail_angle*sin_rail_angle - span_2_x*span_2_x - span_2_y*span_2_y - z*z
-            - span_2_x*z*cos_rail_angle*sin_rail_angle - 0.5*root(3.0)*span_2_x*span_2_y*sin_rail_angle*sin_rail_angle
+            arm_length_squared + (part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)*z
+            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
+            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
         )
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    span_2_x*span_2_x + span_2_y*span_2_y + z*z + span_2_x*z*cos_rail_angle*sin_rail_angle
-                    + 0.5*root(3.0)*span_2_x*span_2_y*sin_rail_angle*sin_rail_angle - z*z*cos_rail_angle*cos_rail_angle
-                    - 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
-                    - 0.75*span_2_y*span_2_y*sin_rail_angle*sin_rail_angle
-                    - root(3.0)*span_2_y*z*cos_rail_angle*sin_rail_angle
+                    (-part_of_root_square_a2_3 - part_of_root_square_a2*span_2_y)*z
+                    - (part_of_root_square_a2_4 - part_of_root_square_a2_2*span_2_y)*span_2_x
+                    - span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4 - span_2_y)
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_y = y + 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius  # rod 3
+        span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length*arm_length + z*z*cos_rail_angle*cos_rail_angle
-            + 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
-            + 0.75*span_3_y*span_3_y*sin_rail_angle*sin_rail_angle
-            + 0.5*root(3.0)*span_2_x*span_3_y*sin_rail_angle*sin_rail_angle - span_2_x*span_2_x - span_3_y*span_3_y
-            - z*z - span_2_x*z*cos_rail_angle*sin_rail_angle - root(3.0)*span_3_y*z*cos_rail_angle*sin_rail_angle
+            arm_length_squared + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
+            + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
+            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
         )
         # rod 3 cannot reach
-        if not (root_square_a3 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    span_2_x*span_2_x + span_3_y*span_3_y + z*z + span_2_x*z*cos_rail_angle*sin_rail_angle
-                    + root(3.0)*span_3_y*z*cos_rail_angle*sin_rail_angle - z*z*cos_rail_angle*cos_rail_angle
-                    - 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
-                    - 0.75*span_3_y*span_3_y*sin_rail_angle*sin_rail_angle
-                    - 0.5*root(3.0)*span_2_x*span_3_y*sin_rail_angle*sin_rail_angle
+                    (span_3_y - span_3_y*sin_rail_angle_squared_times_3_by_4)*span_3_y
+                    + (part_of_root_square_a2*span_3_y - part_of_root_square_a2_3)*z
+                    - (part_of_root_square_a2_4 + part_of_root_square_a2_2*span_3_y)*span_2_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
-        middle_a1 = z*cos_rail_angle + span_1_x*sin_rail_angle
+        cos_rail_angle_times_z = z*cos_rail_angle
+        middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
         a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
-        pivot_1_x = inner_radius - outer_radius - a1*sin_rail_angle  # rod 1
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
-        middle_a2 = 0.5*span_2_x*sin_rail_angle - z*cos_rail_angle - 0.5*root(3.0)*span_2_y*sin_rail_angle
+        part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle*span_2_x
+        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
-        pivot_2_x = 0.5*outer_radius + 0.5*a2*sin_rail_angle - 0.5*inner_radius  # rod 2
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
         rod_2_y = y - pivot_2_y
         pivot_2_z = -a2*cos_rail_angle  # rod 2
         rod_2_z = z - pivot_2_z
-        middle_a3 = 0.5*span_2_x*sin_rail_angle + 0.5*root(3.0)*span_3_y*sin_rail_angle - z*cos_rail_angle
+        middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
         a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
-        pivot_3_x = 0.5*outer_radius + 0.5*a3*sin_rail_angle - 0.5*inner_radius  # rod 3
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = 0.5*root(3.0)*outer_radius + 0.5*root(3.0)*a3*sin_rail_angle - 0.5*root(3.0)*inner_radius  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
         rod_3_y = y - pivot_3_y
         pivot_3_z = -a3*cos_rail_angle  # rod 3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            assembly_sign
+            -part_of_type2_rods_coplanar
             *(
-                rod_1_x*rod_2_y*rod_3_z + rod_1_z*rod_2_x*rod_3_y + rod_2_z*rod_3_x*y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_z*rod_2_y*rod_3_x - rod_2_x*rod_3_z*y
+                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
+                + (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
             )
-            /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -616,7 +701,7 @@ class TripodLinear(OffsetKinematics):
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
             missing = (
                 (
-                    arctan2(abs(y)/arm_length + 0.0, root(1.0 - y*y/(arm_length*arm_length)) + 0.0)
+                    arctan2(abs(y)/arm_length + 0.0, root(1.0 - y*y/arm_length_squared) + 0.0)
                     - arctan2(
                         sin_max_angle_ball_joint + 0.0,
                         root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
@@ -625,21 +710,15 @@ class TripodLinear(OffsetKinematics):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
+        part = root_of_3_times_half_by_arm_length*x
+        half_by_arm_length_times_y = half_by_arm_length*y
         # ball joint of rod 2
-        if not (abs(0.5*y/arm_length + 0.5*root(3.0)*x/arm_length) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y + part) <= sin_max_angle_ball_joint):
             missing = (
                 (
                     arctan2(
-                        abs(0.5*y/arm_length + 0.5*root(3.0)*x/arm_length) + 0.0,
-                        (
-                            root(
-                                1.0
-                                - (
-                                    0.5*y/arm_length + 0.5*root(3.0)*x/arm_length
-                                )*(0.5*y/arm_length + 0.5*root(3.0)*x/arm_length)
-                            )
-                            + 0.0
-                        ),
+                        abs(half_by_arm_length_times_y + part) + 0.0,
+                        root(1.0 + (-half_by_arm_length_times_y - part)*(half_by_arm_length_times_y + part)) + 0.0,
                     )
                     - arctan2(
                         sin_max_angle_ball_joint + 0.0,
@@ -650,20 +729,12 @@ class TripodLinear(OffsetKinematics):
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
-        if not (abs(0.5*root(3.0)*x/arm_length - 0.5*y/arm_length) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_y - part) <= sin_max_angle_ball_joint):
             missing = (
                 (
                     arctan2(
-                        abs(0.5*root(3.0)*x/arm_length - 0.5*y/arm_length) + 0.0,
-                        (
-                            root(
-                                1.0
-                                - (
-                                    0.5*root(3.0)*x/arm_length - 0.5*y/arm_length
-                                )*(0.5*root(3.0)*x/arm_length - 0.5*y/arm_length)
-                            )
-                            + 0.0
-                        ),
+                        abs(half_by_arm_length_times_y - part) + 0.0,
+                        root(1.0 + (part - half_by_arm_length_times_y)*(half_by_arm_length_times_y - part)) + 0.0,
                     )
                     - arctan2(
                         sin_max_angle_ball_joint + 0.0,
@@ -716,21 +787,31 @@ class TripodLinear(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         arm_length = k.arm_length
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         cos_rail_angle = k.cos_rail_angle
-        inner_radius = k.inner_radius
+        half_by_arm_length = k.half_by_arm_length
+        half_sin_rail_angle = k.half_sin_rail_angle
+        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        outer_radius = k.outer_radius
+        part_of_margin_rods_coplanar = k.part_of_margin_rods_coplanar
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
+        sin_rail_angle_times_root_of_3 = k.sin_rail_angle_times_root_of_3
+        twice_cos_rail_angle = k.twice_cos_rail_angle
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
         a3 = axis_a3 - offset_a3
-        pivot_3_y = 0.5*root(3.0)*outer_radius + 0.5*root(3.0)*a3*sin_rail_angle - 0.5*root(3.0)*inner_radius  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
         a1 = axis_a1 - offset_a1
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         pivot_2_z = -a2*cos_rail_angle  # rod 2
@@ -738,59 +819,54 @@ class TripodLinear(OffsetKinematics):
         pivot_3_z = -a3*cos_rail_angle  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = inner_radius - outer_radius - a1*sin_rail_angle  # rod 1
-        pivot_2_x = 0.5*outer_radius + 0.5*a2*sin_rail_angle - 0.5*inner_radius  # rod 2
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = 0.5*outer_radius + 0.5*a3*sin_rail_angle - 0.5*inner_radius  # rod 3
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_z*apart_2_z + 0.5*pivot_2_y*pivot_2_y
+        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_z*apart_3_z + 0.5*pivot_3_y*pivot_3_y
+        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length*arm_length - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length*arm_length):
+        if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         z = foot_z + pivot_1_z + normal_z*rise
         x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = outer_radius + x - inner_radius  # rod 1
+        span_1_x = x - inner_radius_minus_outer_radius  # rod 1
         margin_square_1 = (a1 + z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
-        span_2_x = 0.5*inner_radius + x - 0.5*outer_radius  # rod 2
         y = foot_y + normal_y*rise
-        span_2_y = y + 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*inner_radius  # rod 2
+        span_2_y = y - part_of_pivot_2_y_2  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2
+        part_of_margin_square_2 = span_2_x*sin_rail_angle - twice_cos_rail_angle*z
         margin_square_2 = (
-            0.5*(2.0*a2 + 2.0*z*cos_rail_angle + root(3.0)*span_2_y*sin_rail_angle - span_2_x*sin_rail_angle)
-            /arm_length
+            (2.0*a2 + span_2_y*sin_rail_angle_times_root_of_3 - part_of_margin_square_2)*half_by_arm_length
         )
-        span_3_y = y + 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius  # rod 3
+        span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         margin_square_3 = (
-            0.5*(2.0*a3 + 2.0*z*cos_rail_angle - span_2_x*sin_rail_angle - root(3.0)*span_3_y*sin_rail_angle)
-            /arm_length
+            (2.0*a3 - part_of_margin_square_2 - span_3_y*sin_rail_angle_times_root_of_3)*half_by_arm_length
         )
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
@@ -802,10 +878,10 @@ class TripodLinear(OffsetKinematics):
         rod_3_z = z - pivot_3_z
         margin_rods_coplanar = (
             (
-                rod_1_x*rod_2_y*rod_3_z + rod_1_z*rod_2_x*rod_3_y + rod_2_z*rod_3_x*y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_z*rod_2_y*rod_3_x - rod_2_x*rod_3_z*y
+                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
+                - (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
             )
-            /(arm_length*arm_length*arm_length)
+            /part_of_margin_rods_coplanar
         )
         return (margin_square_1, margin_square_2, margin_square_3, margin_rods_coplanar)
 
@@ -813,23 +889,34 @@ class TripodLinear(OffsetKinematics):
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_length = k.arm_length
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         cos_rail_angle = k.cos_rail_angle
+        half_sin_rail_angle = k.half_sin_rail_angle
         inner_radius = k.inner_radius
-        machine_scale = k.machine_scale
+        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         outer_radius = k.outer_radius
+        part_of_determinant_divisor = k.part_of_determinant_divisor
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
+        part_of_slope_1_by_x = k.part_of_slope_1_by_x
         sin_rail_angle = k.sin_rail_angle
+        sin_rail_angle_times_root_of_3 = k.sin_rail_angle_times_root_of_3
+        twice_cos_rail_angle = k.twice_cos_rail_angle
+        twice_sin_rail_angle = k.twice_sin_rail_angle
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
         a3 = axis_a3 - offset_a3
-        pivot_3_y = 0.5*root(3.0)*outer_radius + 0.5*root(3.0)*a3*sin_rail_angle - 0.5*root(3.0)*inner_radius  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
         a1 = axis_a1 - offset_a1
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         pivot_2_z = -a2*cos_rail_angle  # rod 2
@@ -837,103 +924,97 @@ class TripodLinear(OffsetKinematics):
         pivot_3_z = -a3*cos_rail_angle  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = inner_radius - outer_radius - a1*sin_rail_angle  # rod 1
-        pivot_2_x = 0.5*outer_radius + 0.5*a2*sin_rail_angle - 0.5*inner_radius  # rod 2
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = 0.5*outer_radius + 0.5*a3*sin_rail_angle - 0.5*inner_radius  # rod 3
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_z*apart_2_z + 0.5*pivot_2_y*pivot_2_y
+        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_z*apart_3_z + 0.5*pivot_3_y*pivot_3_y
+        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length*arm_length - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length*arm_length):
+        if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
-        slope_1_by_x = 2.0*outer_radius + 2.0*x + 2.0*a1*sin_rail_angle - 2.0*inner_radius
+        twice_x = -2.0*x
+        slope_1_by_x = a1*twice_sin_rail_angle - part_of_slope_1_by_x - twice_x
         y = foot_y + normal_y*rise
         slope_1_by_y = 2.0*y
         z = foot_z + pivot_1_z + normal_z*rise
-        slope_1_by_z = 2.0*z + 2.0*a1*cos_rail_angle
-        slope_2_by_x = inner_radius + 2.0*x - outer_radius - a2*sin_rail_angle
-        slope_2_by_y = 2.0*y + root(3.0)*(outer_radius + a2*sin_rail_angle) - root(3.0)*inner_radius
-        slope_2_by_z = 2.0*z + 2.0*a2*cos_rail_angle
-        slope_3_by_x = inner_radius + 2.0*x - outer_radius - a3*sin_rail_angle
-        slope_3_by_y = 2.0*y + root(3.0)*inner_radius - root(3.0)*(outer_radius + a3*sin_rail_angle)
-        slope_3_by_z = 2.0*z + 2.0*a3*cos_rail_angle
+        twice_z = -2.0*z
+        slope_1_by_z = a1*twice_cos_rail_angle - twice_z
+        a2_times_sin_rail_angle = a2*sin_rail_angle
+        root_of_3_2 = root(3.0)
+        part_of_slope_2_by_y = (inner_radius - a2_times_sin_rail_angle - outer_radius)*root_of_3_2
+        slope_2_by_y = slope_1_by_y - part_of_slope_2_by_y
+        slope_2_by_z = a2*twice_cos_rail_angle - twice_z
+        a3_times_sin_rail_angle = a3*sin_rail_angle
+        part_of_slope_3_by_y = (inner_radius - a3_times_sin_rail_angle - outer_radius)*root_of_3_2
+        slope_3_by_y = part_of_slope_3_by_y + slope_1_by_y
+        slope_3_by_z = a3*twice_cos_rail_angle - twice_z
+        part_of_determinant = slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z
+        part_of_slope_2_by_x = inner_radius_minus_outer_radius - twice_x
+        slope_2_by_x = part_of_slope_2_by_x - a2_times_sin_rail_angle
+        slope_3_by_x = part_of_slope_2_by_x - a3_times_sin_rail_angle
+        part_of_determinant_2 = slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x
+        part_of_determinant_3 = slope_2_by_y*slope_3_by_x - slope_2_by_x*slope_3_by_y
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
-            slope_1_by_x*slope_2_by_y*slope_3_by_z + slope_1_by_y*slope_2_by_z*slope_3_by_x
-            + slope_1_by_z*slope_2_by_x*slope_3_by_y - slope_1_by_x*slope_2_by_z*slope_3_by_y
-            - slope_1_by_y*slope_2_by_x*slope_3_by_z - slope_1_by_z*slope_2_by_y*slope_3_by_x
+            -part_of_determinant*slope_1_by_x - part_of_determinant_2*slope_1_by_y
+            - part_of_determinant_3*slope_1_by_z
         )
         # nothing controls the plate
-        if not (abs(determinant) > 1e-11*machine_scale*machine_scale*machine_scale):
+        if not (abs(determinant) > part_of_determinant_divisor):
             return Status.IMPOSSIBLE
-        slope_1_by_a1 = (
-            2.0*(z + a1*cos_rail_angle)*cos_rail_angle
-            + 2.0*(outer_radius + x + a1*sin_rail_angle - inner_radius)*sin_rail_angle
-        )
-        determinant_divisor = (
-            determinant
-            if abs(determinant) > 1e-11*machine_scale*machine_scale*machine_scale
-            else 1.0
-        )
+        slope_1_by_a1 = (z - pivot_1_z)*twice_cos_rail_angle + (x - pivot_1_x)*twice_sin_rail_angle
+        one_by_determinant_divisor = 1.0/determinant
+        part = one_by_determinant_divisor*slope_1_by_a1
         slope_2_by_a2 = (
-            2.0*(z + a2*cos_rail_angle)*cos_rail_angle
-            + (
-                y + 0.5*root(3.0)*(outer_radius + a2*sin_rail_angle) - 0.5*root(3.0)*inner_radius
-            )*root(3.0)*sin_rail_angle
-            - (0.5*inner_radius + x - 0.5*outer_radius - 0.5*a2*sin_rail_angle)*sin_rail_angle
+            (pivot_2_x - x)*sin_rail_angle + (z - pivot_2_z)*twice_cos_rail_angle
+            - (0.5*part_of_slope_2_by_y - y)*sin_rail_angle_times_root_of_3
         )
+        part_2 = -one_by_determinant_divisor*slope_2_by_a2
         slope_3_by_a3 = (
-            2.0*(z + a3*cos_rail_angle)*cos_rail_angle
-            - (0.5*inner_radius + x - 0.5*outer_radius - 0.5*a3*sin_rail_angle)*sin_rail_angle
-            - root(3.0)*(
-                y + 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*(outer_radius + a3*sin_rail_angle)
-            )*sin_rail_angle
+            (pivot_3_x - x)*sin_rail_angle + (-0.5*part_of_slope_3_by_y - y)*sin_rail_angle_times_root_of_3
+            + (z - pivot_3_z)*twice_cos_rail_angle
         )
+        part_3 = one_by_determinant_divisor*slope_3_by_a3
         return (
             (
-                (slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z)*slope_1_by_a1/determinant_divisor,
-                (slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*slope_3_by_a3/determinant_divisor,
+                part*part_of_determinant, (slope_1_by_z*slope_3_by_y - slope_1_by_y*slope_3_by_z)*part_2,
+                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
             ),
             (
-                slope_1_by_a1*(slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x)/determinant_divisor,
-                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x)*slope_3_by_a3/determinant_divisor,
+                part*part_of_determinant_2,
+                part_2*(slope_1_by_x*slope_3_by_z - slope_1_by_z*slope_3_by_x),
+                part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
             ),
             (
-                (slope_2_by_y*slope_3_by_x - slope_2_by_x*slope_3_by_y)*slope_1_by_a1/determinant_divisor,
-                (slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*slope_3_by_a3/determinant_divisor,
+                part*part_of_determinant_3, (slope_1_by_y*slope_3_by_x - slope_1_by_x*slope_3_by_y)*part_2,
+                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
             ),
         )
 
@@ -950,16 +1031,31 @@ class TripodLinear(OffsetKinematics):
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self._constants
         arm_length = k.arm_length
-        assembly_sign = k.assembly_sign
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         cos_rail_angle = k.cos_rail_angle
-        inner_radius = k.inner_radius
+        cos_rail_angle_squared = k.cos_rail_angle_squared
+        cos_rail_angle_times_sin_rail_angle = k.cos_rail_angle_times_sin_rail_angle
+        half_by_arm_length = k.half_by_arm_length
+        half_sin_rail_angle = k.half_sin_rail_angle
+        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        outer_radius = k.outer_radius
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
+        part_of_root_square_a1 = k.part_of_root_square_a1
+        part_of_root_square_a2 = k.part_of_root_square_a2
+        part_of_root_square_a2_2 = k.part_of_root_square_a2_2
+        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
+        root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
         sin_rail_angle = k.sin_rail_angle
+        sin_rail_angle_squared = k.sin_rail_angle_squared
+        sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
+        sin_rail_angle_squared_times_3_by_4 = k.sin_rail_angle_squared_times_3_by_4
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -969,104 +1065,92 @@ class TripodLinear(OffsetKinematics):
         flange_y = y - point_y  # the flange behind the point
         flange_z = z - point_z  # the flange behind the point
         flange_x = x - point_x  # the flange behind the point
-        span_1_x = flange_x + outer_radius - inner_radius  # rod 1
+        span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1
+        part_of_root_square_a1_2 = flange_z - flange_z*cos_rail_angle_squared
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length*arm_length + flange_z*flange_z*cos_rail_angle*cos_rail_angle
-            + 2.0*flange_z*span_1_x*cos_rail_angle*sin_rail_angle + span_1_x*span_1_x*sin_rail_angle*sin_rail_angle
-            - flange_y*flange_y - flange_z*flange_z - span_1_x*span_1_x
+            arm_length_squared + flange_z*(part_of_root_square_a1*span_1_x - part_of_root_square_a1_2)
+            - flange_y*flange_y - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x
         )
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a1 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    flange_y*flange_y + flange_z*flange_z + span_1_x*span_1_x
-                    - flange_z*flange_z*cos_rail_angle*cos_rail_angle
-                    - 2.0*flange_z*span_1_x*cos_rail_angle*sin_rail_angle
-                    - span_1_x*span_1_x*sin_rail_angle*sin_rail_angle
+                    flange_y*flange_y + (part_of_root_square_a1_2 - part_of_root_square_a1*span_1_x)*flange_z
+                    - span_1_x*(span_1_x*sin_rail_angle_squared - span_1_x)
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = flange_x + 0.5*inner_radius - 0.5*outer_radius  # rod 2
-        span_2_y = flange_y + 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*inner_radius  # rod 2
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
+        span_2_y = flange_y - part_of_pivot_2_y_2  # rod 2
+        part_of_root_square_a2_3 = -part_of_root_square_a1_2 - span_2_x*cos_rail_angle_times_sin_rail_angle
+        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length*arm_length + flange_z*flange_z*cos_rail_angle*cos_rail_angle
-            + 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
-            + 0.75*span_2_y*span_2_y*sin_rail_angle*sin_rail_angle
-            + root(3.0)*flange_z*span_2_y*cos_rail_angle*sin_rail_angle - flange_z*flange_z - span_2_x*span_2_x
-            - span_2_y*span_2_y - flange_z*span_2_x*cos_rail_angle*sin_rail_angle
-            - 0.5*root(3.0)*span_2_x*span_2_y*sin_rail_angle*sin_rail_angle
+            arm_length_squared + flange_z*(part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)
+            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
+            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
         )
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    flange_z*flange_z + span_2_x*span_2_x + span_2_y*span_2_y
-                    + flange_z*span_2_x*cos_rail_angle*sin_rail_angle
-                    + 0.5*root(3.0)*span_2_x*span_2_y*sin_rail_angle*sin_rail_angle
-                    - flange_z*flange_z*cos_rail_angle*cos_rail_angle
-                    - 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
-                    - 0.75*span_2_y*span_2_y*sin_rail_angle*sin_rail_angle
-                    - root(3.0)*flange_z*span_2_y*cos_rail_angle*sin_rail_angle
+                    (-part_of_root_square_a2_3 - part_of_root_square_a2*span_2_y)*flange_z
+                    - (part_of_root_square_a2_4 - part_of_root_square_a2_2*span_2_y)*span_2_x
+                    - span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4 - span_2_y)
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_y = flange_y + 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius  # rod 3
+        span_3_y = flange_y + part_of_pivot_2_y_2  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length*arm_length + flange_z*flange_z*cos_rail_angle*cos_rail_angle
-            + 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
-            + 0.75*span_3_y*span_3_y*sin_rail_angle*sin_rail_angle
-            + 0.5*root(3.0)*span_2_x*span_3_y*sin_rail_angle*sin_rail_angle - flange_z*flange_z - span_2_x*span_2_x
-            - span_3_y*span_3_y - flange_z*span_2_x*cos_rail_angle*sin_rail_angle
-            - root(3.0)*flange_z*span_3_y*cos_rail_angle*sin_rail_angle
+            arm_length_squared + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*flange_z
+            + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
+            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
         )
         # rod 3 cannot reach
-        if not (root_square_a3 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    flange_z*flange_z + span_2_x*span_2_x + span_3_y*span_3_y
-                    + flange_z*span_2_x*cos_rail_angle*sin_rail_angle
-                    + root(3.0)*flange_z*span_3_y*cos_rail_angle*sin_rail_angle
-                    - flange_z*flange_z*cos_rail_angle*cos_rail_angle
-                    - 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
-                    - 0.75*span_3_y*span_3_y*sin_rail_angle*sin_rail_angle
-                    - 0.5*root(3.0)*span_2_x*span_3_y*sin_rail_angle*sin_rail_angle
+                    flange_z*(part_of_root_square_a2*span_3_y - part_of_root_square_a2_3)
+                    + (span_3_y - span_3_y*sin_rail_angle_squared_times_3_by_4)*span_3_y
+                    - (part_of_root_square_a2_4 + part_of_root_square_a2_2*span_3_y)*span_2_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
-        middle_a1 = flange_z*cos_rail_angle + span_1_x*sin_rail_angle
+        cos_rail_angle_times_flange_z = flange_z*cos_rail_angle
+        middle_a1 = cos_rail_angle_times_flange_z + span_1_x*sin_rail_angle
         a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
-        pivot_1_x = inner_radius - outer_radius - a1*sin_rail_angle  # rod 1
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
         rod_1_x = flange_x - pivot_1_x
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         rod_1_z = flange_z - pivot_1_z
-        middle_a2 = 0.5*span_2_x*sin_rail_angle - flange_z*cos_rail_angle - 0.5*root(3.0)*span_2_y*sin_rail_angle
+        part_of_middle_a2 = cos_rail_angle_times_flange_z - half_sin_rail_angle*span_2_x
+        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
-        pivot_2_x = 0.5*outer_radius + 0.5*a2*sin_rail_angle - 0.5*inner_radius  # rod 2
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
         rod_2_x = flange_x - pivot_2_x
-        pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
         rod_2_y = flange_y - pivot_2_y
         pivot_2_z = -a2*cos_rail_angle  # rod 2
         rod_2_z = flange_z - pivot_2_z
-        middle_a3 = 0.5*span_2_x*sin_rail_angle + 0.5*root(3.0)*span_3_y*sin_rail_angle - flange_z*cos_rail_angle
+        middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
         a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
-        pivot_3_x = 0.5*outer_radius + 0.5*a3*sin_rail_angle - 0.5*inner_radius  # rod 3
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
         rod_3_x = flange_x - pivot_3_x
-        pivot_3_y = 0.5*root(3.0)*outer_radius + 0.5*root(3.0)*a3*sin_rail_angle - 0.5*root(3.0)*inner_radius  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
         rod_3_y = flange_y - pivot_3_y
         pivot_3_z = -a3*cos_rail_angle  # rod 3
         rod_3_z = flange_z - pivot_3_z
         type2_rods_coplanar = (
-            (
-                flange_y*rod_2_z*rod_3_x + rod_1_x*rod_2_y*rod_3_z + rod_1_z*rod_2_x*rod_3_y
-                - flange_y*rod_2_x*rod_3_z - rod_1_x*rod_2_z*rod_3_y - rod_1_z*rod_2_y*rod_3_x
+            -(
+                flange_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x) + (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
             )
-            *assembly_sign/(arm_length*arm_length*arm_length)
+            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -1078,7 +1162,7 @@ class TripodLinear(OffsetKinematics):
         if not (abs(flange_y)/arm_length <= sin_max_angle_ball_joint):
             missing = (
                 (
-                    arctan2(abs(flange_y)/arm_length + 0.0, root(1.0 - flange_y*flange_y/(arm_length*arm_length)) + 0.0)
+                    arctan2(abs(flange_y)/arm_length + 0.0, root(1.0 - flange_y*flange_y/arm_length_squared) + 0.0)
                     - arctan2(
                         sin_max_angle_ball_joint + 0.0,
                         root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
@@ -1087,18 +1171,18 @@ class TripodLinear(OffsetKinematics):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
+        part = flange_x*root_of_3_times_half_by_arm_length
+        half_by_arm_length_times_flange_y = flange_y*half_by_arm_length
         # ball joint of rod 2
-        if not (abs(0.5*flange_y/arm_length + 0.5*root(3.0)*flange_x/arm_length) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_flange_y + part) <= sin_max_angle_ball_joint):
             missing = (
                 (
                     arctan2(
-                        abs(0.5*flange_y/arm_length + 0.5*root(3.0)*flange_x/arm_length) + 0.0,
+                        abs(half_by_arm_length_times_flange_y + part) + 0.0,
                         (
                             root(
                                 1.0
-                                - (
-                                    0.5*flange_y/arm_length + 0.5*root(3.0)*flange_x/arm_length
-                                )*(0.5*flange_y/arm_length + 0.5*root(3.0)*flange_x/arm_length)
+                                + (-half_by_arm_length_times_flange_y - part)*(half_by_arm_length_times_flange_y + part)
                             )
                             + 0.0
                         ),
@@ -1112,17 +1196,15 @@ class TripodLinear(OffsetKinematics):
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
-        if not (abs(0.5*root(3.0)*flange_x/arm_length - 0.5*flange_y/arm_length) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_times_flange_y - part) <= sin_max_angle_ball_joint):
             missing = (
                 (
                     arctan2(
-                        abs(0.5*root(3.0)*flange_x/arm_length - 0.5*flange_y/arm_length) + 0.0,
+                        abs(half_by_arm_length_times_flange_y - part) + 0.0,
                         (
                             root(
                                 1.0
-                                - (
-                                    0.5*root(3.0)*flange_x/arm_length - 0.5*flange_y/arm_length
-                                )*(0.5*root(3.0)*flange_x/arm_length - 0.5*flange_y/arm_length)
+                                + (part - half_by_arm_length_times_flange_y)*(half_by_arm_length_times_flange_y - part)
                             )
                             + 0.0
                         ),
@@ -1145,21 +1227,30 @@ class TripodLinear(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         arm_length = k.arm_length
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         cos_rail_angle = k.cos_rail_angle
-        inner_radius = k.inner_radius
+        half_by_arm_length = k.half_by_arm_length
+        half_sin_rail_angle = k.half_sin_rail_angle
+        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        outer_radius = k.outer_radius
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
+        sin_rail_angle_times_root_of_3 = k.sin_rail_angle_times_root_of_3
+        twice_cos_rail_angle = k.twice_cos_rail_angle
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
         a3 = axis_a3 - offset_a3
-        pivot_3_y = 0.5*root(3.0)*outer_radius + 0.5*root(3.0)*a3*sin_rail_angle - 0.5*root(3.0)*inner_radius  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
         a1 = axis_a1 - offset_a1
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         pivot_2_z = -a2*cos_rail_angle  # rod 2
@@ -1167,59 +1258,54 @@ class TripodLinear(OffsetKinematics):
         pivot_3_z = -a3*cos_rail_angle  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = inner_radius - outer_radius - a1*sin_rail_angle  # rod 1
-        pivot_2_x = 0.5*outer_radius + 0.5*a2*sin_rail_angle - 0.5*inner_radius  # rod 2
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = 0.5*outer_radius + 0.5*a3*sin_rail_angle - 0.5*inner_radius  # rod 3
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_z*apart_2_z + 0.5*pivot_2_y*pivot_2_y
+        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_z*apart_3_z + 0.5*pivot_3_y*pivot_3_y
+        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length*arm_length - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length*arm_length):
+        if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         flange_z = foot_z + pivot_1_z + normal_z*rise
         flange_x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = flange_x + outer_radius - inner_radius  # rod 1
+        span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1
         branch_carriage_1 = (a1 + flange_z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
-        span_2_x = flange_x + 0.5*inner_radius - 0.5*outer_radius  # rod 2
         flange_y = foot_y + normal_y*rise
-        span_2_y = flange_y + 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*inner_radius  # rod 2
+        span_2_y = flange_y - part_of_pivot_2_y_2  # rod 2
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
+        part_of_branch_carriage_2 = span_2_x*sin_rail_angle - flange_z*twice_cos_rail_angle
         branch_carriage_2 = (
-            0.5*(2.0*a2 + 2.0*flange_z*cos_rail_angle + root(3.0)*span_2_y*sin_rail_angle - span_2_x*sin_rail_angle)
-            /arm_length
+            (2.0*a2 + span_2_y*sin_rail_angle_times_root_of_3 - part_of_branch_carriage_2)*half_by_arm_length
         )
-        span_3_y = flange_y + 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius  # rod 3
+        span_3_y = flange_y + part_of_pivot_2_y_2  # rod 3
         branch_carriage_3 = (
-            0.5*(2.0*a3 + 2.0*flange_z*cos_rail_angle - span_2_x*sin_rail_angle - root(3.0)*span_3_y*sin_rail_angle)
-            /arm_length
+            (2.0*a3 - part_of_branch_carriage_2 - span_3_y*sin_rail_angle_times_root_of_3)*half_by_arm_length
         )
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
 

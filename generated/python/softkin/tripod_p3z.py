@@ -21,9 +21,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 34 additions, 55 multiplications, 7 divisions, 1 square roots, 0 sines
-    inverse: 54 additions, 54 multiplications, 7 divisions, 9 square roots, 0 sines
-    inverse, all 8 branches open: 425 additions, 432 multiplications, 56 divisions, 72 square roots, 0 sines
+    forward: 32 additions, 38 multiplications, 1 divisions, 1 square roots, 0 sines
+    inverse: 42 additions, 22 multiplications, 0 divisions, 3 square roots, 0 sines
+    inverse, all 8 branches open: 329 additions, 176 multiplications, 0 divisions, 24 square roots, 0 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -105,6 +105,32 @@ class Constants(NamedTuple):
     apart_3_x: float
     normal_z: float
     assembly_sign: float
+    normal_z_squared: float
+    part_of_normal_divisor: float
+    apart_3_y_times_normal_z: float
+    apart_2_y_times_normal_z: float
+    apart_3_x_times_normal_z: float
+    apart_2_x_times_normal_z: float
+    arm_length_squared: float
+    arm_length_squared_times_rounding: float
+    part_of_share_2: float
+    part_of_share_3: float
+    one_by_arm_length: float
+    part_of_span_1_x: float
+    part_of_span_1_y: float
+    part_of_span_2_x: float
+    part_of_span_2_y: float
+    part_of_span_3_x: float
+    part_of_span_3_y: float
+    part_of_type2_rods_coplanar: float
+    part_of_margin_rods_coplanar: float
+    part_of_determinant_divisor: float
+    part_of_slope_1_by_x: float
+    part_of_slope_1_by_y: float
+    part_of_slope_2_by_x: float
+    part_of_slope_2_by_y: float
+    part_of_slope_3_by_x: float
+    part_of_slope_3_by_y: float
 
 
 class TripodP3Z(OffsetKinematics):
@@ -416,6 +442,38 @@ class TripodP3Z(OffsetKinematics):
             if (rail_x_2 - rail_x_1)*(rail_y_3 - rail_y_1) - (rail_x_3 - rail_x_1)*(rail_y_2 - rail_y_1) > 0.0
             else (-1.0 if tcp_above else 1.0)
         )
+        normal_z_squared = normal_z*normal_z
+        part_of_normal_divisor = 1e-22*arm_length*arm_length*arm_length*arm_length
+        apart_3_y_times_normal_z = apart_3_y*normal_z
+        apart_2_y_times_normal_z = apart_2_y*normal_z
+        apart_3_x_times_normal_z = apart_3_x*normal_z
+        apart_2_x_times_normal_z = apart_2_x*normal_z
+        arm_length_squared = arm_length*arm_length
+        arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
+        part_of_share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y
+        part_of_share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y
+        one_by_arm_length = 1.0/arm_length
+        part_of_span_1_x_2 = sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)
+        part_of_span_1_x = rail_x_1 - rail_x_1*tcp_displacement/part_of_span_1_x_2
+        part_of_span_1_y = rail_y_1 - rail_y_1*tcp_displacement/part_of_span_1_x_2
+        part_of_span_2_x_2 = sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)
+        part_of_span_2_x = rail_x_2 - rail_x_2*tcp_displacement/part_of_span_2_x_2
+        part_of_span_2_y = rail_y_2 - rail_y_2*tcp_displacement/part_of_span_2_x_2
+        part_of_span_3_x_2 = sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)
+        part_of_span_3_x = rail_x_3 - rail_x_3*tcp_displacement/part_of_span_3_x_2
+        part_of_span_3_y = rail_y_3 - rail_y_3*tcp_displacement/part_of_span_3_x_2
+        part_of_type2_rods_coplanar = assembly_sign/(arm_length*arm_length*arm_length)
+        part_of_margin_rods_coplanar = arm_length*arm_length*arm_length
+        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
+        part_of_slope_1_by_x_2 = tcp_displacement/part_of_span_1_x_2 - 1.0
+        part_of_slope_1_by_x = -part_of_slope_1_by_x_2*rail_x_1
+        part_of_slope_1_by_y = -part_of_slope_1_by_x_2*rail_y_1
+        part_of_slope_2_by_x_2 = tcp_displacement/part_of_span_2_x_2 - 1.0
+        part_of_slope_2_by_x = -part_of_slope_2_by_x_2*rail_x_2
+        part_of_slope_2_by_y = -part_of_slope_2_by_x_2*rail_y_2
+        part_of_slope_3_by_x_2 = tcp_displacement/part_of_span_3_x_2 - 1.0
+        part_of_slope_3_by_x = -part_of_slope_3_by_x_2*rail_x_3
+        part_of_slope_3_by_y = -part_of_slope_3_by_x_2*rail_y_3
         return Constants(
             arm_length=arm_length, tcp_displacement=tcp_displacement, rail_x_1=rail_x_1, rail_y_1=rail_y_1,
             rail_x_2=rail_x_2, rail_y_2=rail_y_2, rail_x_3=rail_x_3, rail_y_3=rail_y_3, offset_a1=offset_a1,
@@ -427,7 +485,20 @@ class TripodP3Z(OffsetKinematics):
             highest_a3=highest_a3, machine_scale=machine_scale, tie=tie, pivot_1_y=pivot_1_y, pivot_2_y=pivot_2_y,
             apart_2_y=apart_2_y, pivot_3_y=pivot_3_y, apart_3_y=apart_3_y, pivot_1_x=pivot_1_x, pivot_2_x=pivot_2_x,
             apart_2_x=apart_2_x, pivot_3_x=pivot_3_x, apart_3_x=apart_3_x, normal_z=normal_z,
-            assembly_sign=assembly_sign,
+            assembly_sign=assembly_sign, normal_z_squared=normal_z_squared,
+            part_of_normal_divisor=part_of_normal_divisor, apart_3_y_times_normal_z=apart_3_y_times_normal_z,
+            apart_2_y_times_normal_z=apart_2_y_times_normal_z, apart_3_x_times_normal_z=apart_3_x_times_normal_z,
+            apart_2_x_times_normal_z=apart_2_x_times_normal_z, arm_length_squared=arm_length_squared,
+            arm_length_squared_times_rounding=arm_length_squared_times_rounding, part_of_share_2=part_of_share_2,
+            part_of_share_3=part_of_share_3, one_by_arm_length=one_by_arm_length, part_of_span_1_x=part_of_span_1_x,
+            part_of_span_1_y=part_of_span_1_y, part_of_span_2_x=part_of_span_2_x, part_of_span_2_y=part_of_span_2_y,
+            part_of_span_3_x=part_of_span_3_x, part_of_span_3_y=part_of_span_3_y,
+            part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
+            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
+            part_of_determinant_divisor=part_of_determinant_divisor, part_of_slope_1_by_x=part_of_slope_1_by_x,
+            part_of_slope_1_by_y=part_of_slope_1_by_y, part_of_slope_2_by_x=part_of_slope_2_by_x,
+            part_of_slope_2_by_y=part_of_slope_2_by_y, part_of_slope_3_by_x=part_of_slope_3_by_x,
+            part_of_slope_3_by_y=part_of_slope_3_by_y,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -435,15 +506,25 @@ class TripodP3Z(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         apart_2_x = k.apart_2_x
+        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
         apart_2_y = k.apart_2_y
+        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
         apart_3_x = k.apart_3_x
+        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
         apart_3_y = k.apart_3_y
-        arm_length = k.arm_length
+        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         normal_z = k.normal_z
+        normal_z_squared = k.normal_z_squared
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        one_by_arm_length = k.one_by_arm_length
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_share_2 = k.part_of_share_2
+        part_of_share_3 = k.part_of_share_3
         pivot_1_x = k.pivot_1_x
         pivot_1_y = k.pivot_1_y
         # numbers of reasonable size
@@ -456,43 +537,43 @@ class TripodP3Z(OffsetKinematics):
         apart_3_z = a3 - a1
         normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length
-            else 1.0
-        )
-        # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y + 0.5*apart_2_z*apart_2_z
-        # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y + 0.5*apart_3_z*apart_3_z
+        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
+        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *(
+                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
+                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+            )
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *(
+                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
+                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+            )
         )
         foot_z = (
-            ((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length*arm_length - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length*arm_length):
+        if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + pivot_1_y + normal_y*rise
         z = a1 + foot_z + normal_z*rise
-        branch_carriage_1 = (a1 - z)/arm_length
-        branch_carriage_2 = (a2 - z)/arm_length
-        branch_carriage_3 = (a3 - z)/arm_length
+        branch_carriage_1 = (a1 - z)*one_by_arm_length
+        branch_carriage_2 = (a2 - z)*one_by_arm_length
+        branch_carriage_3 = (a3 - z)*one_by_arm_length
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -504,14 +585,22 @@ class TripodP3Z(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         apart_2_x = k.apart_2_x
+        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
         apart_2_y = k.apart_2_y
+        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
         apart_3_x = k.apart_3_x
+        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
         apart_3_y = k.apart_3_y
-        arm_length = k.arm_length
-        normal_z = k.normal_z
+        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
+        normal_z_squared = k.normal_z_squared
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_share_2 = k.part_of_share_2
+        part_of_share_3 = k.part_of_share_3
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
@@ -522,35 +611,35 @@ class TripodP3Z(OffsetKinematics):
         apart_3_z = a3 - a1
         normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length
-            else 1.0
-        )
-        # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y + 0.5*apart_2_z*apart_2_z
-        # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y + 0.5*apart_3_z*apart_3_z
+        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
+        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *(
+                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
+                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+            )
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *(
+                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
+                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+            )
         )
         foot_z = (
-            ((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length*arm_length - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length*arm_length):
+        if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -562,49 +651,50 @@ class TripodP3Z(OffsetKinematics):
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self._constants
         arm_length = k.arm_length
-        assembly_sign = k.assembly_sign
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_span_1_x = k.part_of_span_1_x
+        part_of_span_1_y = k.part_of_span_1_y
+        part_of_span_2_x = k.part_of_span_2_x
+        part_of_span_2_y = k.part_of_span_2_y
+        part_of_span_3_x = k.part_of_span_3_x
+        part_of_span_3_y = k.part_of_span_3_y
+        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         pivot_1_x = k.pivot_1_x
         pivot_1_y = k.pivot_1_y
         pivot_2_x = k.pivot_2_x
         pivot_2_y = k.pivot_2_y
         pivot_3_x = k.pivot_3_x
         pivot_3_y = k.pivot_3_y
-        rail_x_1 = k.rail_x_1
-        rail_x_2 = k.rail_x_2
-        rail_x_3 = k.rail_x_3
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        rail_y_3 = k.rail_y_3
-        tcp_displacement = k.tcp_displacement
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
-        span_1_y = y + rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
+        span_1_x = x - part_of_span_1_x  # rod 1
+        span_1_y = y - part_of_span_1_y  # rod 1
         # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
+        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a1 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_1_x*span_1_x + span_1_y*span_1_y))
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = x + rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
-        span_2_y = y + rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
+        span_2_x = x - part_of_span_2_x  # rod 2
+        span_2_y = y - part_of_span_2_y  # rod 2
         # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
+        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a2 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_2_x*span_2_x + span_2_y*span_2_y))
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_x = x + rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
-        span_3_y = y + rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
+        span_3_x = x - part_of_span_3_x  # rod 3
+        span_3_y = y - part_of_span_3_y  # rod 3
         # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
+        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
         # rod 3 cannot reach
-        if not (root_square_a3 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a3 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_3_x*span_3_x + span_3_y*span_3_y))
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         rod_1_x = x - pivot_1_x
@@ -620,12 +710,11 @@ class TripodP3Z(OffsetKinematics):
         a3 = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
-            assembly_sign
-            *(
-                rod_1_x*rod_2_y*rod_3_z + rod_1_y*rod_2_z*rod_3_x + rod_1_z*rod_2_x*rod_3_y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_y*rod_2_x*rod_3_z - rod_1_z*rod_2_y*rod_3_x
+            -(
+                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z - rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y)
+                - (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
             )
-            /(arm_length*arm_length*arm_length)
+            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -676,15 +765,26 @@ class TripodP3Z(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         apart_2_x = k.apart_2_x
+        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
         apart_2_y = k.apart_2_y
+        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
         apart_3_x = k.apart_3_x
+        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
         apart_3_y = k.apart_3_y
-        arm_length = k.arm_length
+        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         normal_z = k.normal_z
+        normal_z_squared = k.normal_z_squared
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        one_by_arm_length = k.one_by_arm_length
+        part_of_margin_rods_coplanar = k.part_of_margin_rods_coplanar
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_share_2 = k.part_of_share_2
+        part_of_share_3 = k.part_of_share_3
         pivot_1_x = k.pivot_1_x
         pivot_1_y = k.pivot_1_y
         pivot_2_x = k.pivot_2_x
@@ -701,58 +801,58 @@ class TripodP3Z(OffsetKinematics):
         apart_3_z = a3 - a1
         normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length
-            else 1.0
-        )
-        # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y + 0.5*apart_2_z*apart_2_z
-        # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y + 0.5*apart_3_z*apart_3_z
+        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
+        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *(
+                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
+                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+            )
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *(
+                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
+                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+            )
         )
         foot_z = (
-            ((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length*arm_length - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length*arm_length):
+        if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         z = a1 + foot_z + normal_z*rise
-        margin_level_1 = (a1 - z)/arm_length
-        margin_level_2 = (a2 - z)/arm_length
-        margin_level_3 = (a3 - z)/arm_length
+        rod_1_z = z - a1
+        margin_level_1 = -one_by_arm_length*rod_1_z
+        rod_2_z = z - a2
+        margin_level_2 = -one_by_arm_length*rod_2_z
+        rod_3_z = z - a3
+        margin_level_3 = -one_by_arm_length*rod_3_z
         x = foot_x + pivot_1_x + normal_x*rise
         rod_1_x = x - pivot_1_x
         y = foot_y + pivot_1_y + normal_y*rise
         rod_1_y = y - pivot_1_y
-        rod_1_z = z - a1
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        rod_2_z = z - a2
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        rod_3_z = z - a3
         margin_rods_coplanar = (
             (
-                rod_1_x*rod_2_y*rod_3_z + rod_1_y*rod_2_z*rod_3_x + rod_1_z*rod_2_x*rod_3_y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_y*rod_2_x*rod_3_z - rod_1_z*rod_2_y*rod_3_x
+                -(rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z - (rod_1_x*rod_3_y - rod_1_y*rod_3_x)*rod_2_z
+                - (rod_1_y*rod_2_x - rod_1_x*rod_2_y)*rod_3_z
             )
-            /(arm_length*arm_length*arm_length)
+            /part_of_margin_rods_coplanar
         )
         return (margin_level_1, margin_level_2, margin_level_3, margin_rods_coplanar)
 
@@ -761,25 +861,33 @@ class TripodP3Z(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         apart_2_x = k.apart_2_x
+        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
         apart_2_y = k.apart_2_y
+        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
         apart_3_x = k.apart_3_x
+        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
         apart_3_y = k.apart_3_y
-        arm_length = k.arm_length
+        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
-        machine_scale = k.machine_scale
         normal_z = k.normal_z
+        normal_z_squared = k.normal_z_squared
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_determinant_divisor = k.part_of_determinant_divisor
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_share_2 = k.part_of_share_2
+        part_of_share_3 = k.part_of_share_3
+        part_of_slope_1_by_x = k.part_of_slope_1_by_x
+        part_of_slope_1_by_y = k.part_of_slope_1_by_y
+        part_of_slope_2_by_x = k.part_of_slope_2_by_x
+        part_of_slope_2_by_y = k.part_of_slope_2_by_y
+        part_of_slope_3_by_x = k.part_of_slope_3_by_x
+        part_of_slope_3_by_y = k.part_of_slope_3_by_y
         pivot_1_x = k.pivot_1_x
         pivot_1_y = k.pivot_1_y
-        rail_x_1 = k.rail_x_1
-        rail_x_2 = k.rail_x_2
-        rail_x_3 = k.rail_x_3
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        rail_y_3 = k.rail_y_3
-        tcp_displacement = k.tcp_displacement
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
@@ -790,81 +898,78 @@ class TripodP3Z(OffsetKinematics):
         apart_3_z = a3 - a1
         normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length
-            else 1.0
-        )
-        # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y + 0.5*apart_2_z*apart_2_z
-        # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y + 0.5*apart_3_z*apart_3_z
+        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
+        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *(
+                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
+                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+            )
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *(
+                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
+                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+            )
         )
         foot_z = (
-            ((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length*arm_length - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length*arm_length):
+        if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
-        slope_1_by_x = 2.0*x - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+        slope_1_by_x = 2.0*(x - part_of_slope_1_by_x)
         y = foot_y + pivot_1_y + normal_y*rise
-        slope_1_by_y = 2.0*y - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+        slope_1_by_y = 2.0*(y - part_of_slope_1_by_y)
         z = a1 + foot_z + normal_z*rise
-        slope_1_by_z = 2.0*z - 2.0*a1
-        slope_2_by_x = 2.0*x - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-        slope_2_by_y = 2.0*y - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-        slope_2_by_z = 2.0*z - 2.0*a2
-        slope_3_by_x = 2.0*x - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-        slope_3_by_y = 2.0*y - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-        slope_3_by_z = 2.0*z - 2.0*a3
+        slope_1_by_z = 2.0*(z - a1)
+        slope_2_by_y = 2.0*(y - part_of_slope_2_by_y)
+        slope_2_by_z = 2.0*(z - a2)
+        slope_3_by_y = 2.0*(y - part_of_slope_3_by_y)
+        slope_3_by_z = 2.0*(z - a3)
+        part_of_determinant = slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z
+        slope_2_by_x = 2.0*(x - part_of_slope_2_by_x)
+        slope_3_by_x = 2.0*(x - part_of_slope_3_by_x)
+        part_of_determinant_2 = slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x
+        part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
-            slope_1_by_x*slope_2_by_y*slope_3_by_z + slope_1_by_y*slope_2_by_z*slope_3_by_x
-            + slope_1_by_z*slope_2_by_x*slope_3_by_y - slope_1_by_x*slope_2_by_z*slope_3_by_y
-            - slope_1_by_y*slope_2_by_x*slope_3_by_z - slope_1_by_z*slope_2_by_y*slope_3_by_x
+            part_of_determinant_3*slope_1_by_z - part_of_determinant*slope_1_by_x - part_of_determinant_2*slope_1_by_y
         )
         # nothing controls the plate
-        if not (abs(determinant) > 1e-11*machine_scale*machine_scale*machine_scale):
+        if not (abs(determinant) > part_of_determinant_divisor):
             return Status.IMPOSSIBLE
-        slope_1_by_a1 = 2.0*a1 - 2.0*z
-        determinant_divisor = (
-            determinant
-            if abs(determinant) > 1e-11*machine_scale*machine_scale*machine_scale
-            else 1.0
-        )
-        slope_2_by_a2 = 2.0*a2 - 2.0*z
-        slope_3_by_a3 = 2.0*a3 - 2.0*z
+        one_by_determinant_divisor = 1.0/determinant
+        part = -one_by_determinant_divisor*slope_1_by_z
+        part_2 = -one_by_determinant_divisor*slope_2_by_z
+        part_3 = -one_by_determinant_divisor*slope_3_by_z
         return (
             (
-                (slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z)*slope_1_by_a1/determinant_divisor,
-                (slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*slope_3_by_a3/determinant_divisor,
+                part*part_of_determinant,
+                part_2*(slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y),
+                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
             ),
             (
-                slope_1_by_a1*(slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x)/determinant_divisor,
-                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x)*slope_3_by_a3/determinant_divisor,
+                part*part_of_determinant_2,
+                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*part_2,
+                part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
             ),
             (
-                (slope_2_by_y*slope_3_by_x - slope_2_by_x*slope_3_by_y)*slope_1_by_a1/determinant_divisor,
-                (slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*slope_3_by_a3/determinant_divisor,
+                -part*part_of_determinant_3,
+                part_2*(slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x),
+                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
             ),
         )
 
@@ -881,24 +986,25 @@ class TripodP3Z(OffsetKinematics):
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self._constants
         arm_length = k.arm_length
-        assembly_sign = k.assembly_sign
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_span_1_x = k.part_of_span_1_x
+        part_of_span_1_y = k.part_of_span_1_y
+        part_of_span_2_x = k.part_of_span_2_x
+        part_of_span_2_y = k.part_of_span_2_y
+        part_of_span_3_x = k.part_of_span_3_x
+        part_of_span_3_y = k.part_of_span_3_y
+        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         pivot_1_x = k.pivot_1_x
         pivot_1_y = k.pivot_1_y
         pivot_2_x = k.pivot_2_x
         pivot_2_y = k.pivot_2_y
         pivot_3_x = k.pivot_3_x
         pivot_3_y = k.pivot_3_y
-        rail_x_1 = k.rail_x_1
-        rail_x_2 = k.rail_x_2
-        rail_x_3 = k.rail_x_3
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        rail_y_3 = k.rail_y_3
-        tcp_displacement = k.tcp_displacement
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -906,35 +1012,29 @@ class TripodP3Z(OffsetKinematics):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # the flange behind the point
-        # rod 1
-        span_1_x = flange_x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1
+        span_1_x = flange_x - part_of_span_1_x  # rod 1
         flange_y = y - point_y  # the flange behind the point
-        # rod 1
-        span_1_y = flange_y + rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1
+        span_1_y = flange_y - part_of_span_1_y  # rod 1
         # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
+        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a1 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_1_x*span_1_x + span_1_y*span_1_y))
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        # rod 2
-        span_2_x = flange_x + rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2
-        # rod 2
-        span_2_y = flange_y + rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2
+        span_2_x = flange_x - part_of_span_2_x  # rod 2
+        span_2_y = flange_y - part_of_span_2_y  # rod 2
         # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
+        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a2 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_2_x*span_2_x + span_2_y*span_2_y))
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        # rod 3
-        span_3_x = flange_x + rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3
-        # rod 3
-        span_3_y = flange_y + rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3
+        span_3_x = flange_x - part_of_span_3_x  # rod 3
+        span_3_y = flange_y - part_of_span_3_y  # rod 3
         # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
+        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
         # rod 3 cannot reach
-        if not (root_square_a3 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a3 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_3_x*span_3_x + span_3_y*span_3_y))
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         rod_1_x = flange_x - pivot_1_x
@@ -951,12 +1051,11 @@ class TripodP3Z(OffsetKinematics):
         a3 = flange_z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_z = flange_z - a3
         type2_rods_coplanar = (
-            assembly_sign
-            *(
-                rod_1_x*rod_2_y*rod_3_z + rod_1_y*rod_2_z*rod_3_x + rod_1_z*rod_2_x*rod_3_y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_y*rod_2_x*rod_3_z - rod_1_z*rod_2_y*rod_3_x
+            (
+                rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x) - (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x
+                - rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
             )
-            /(arm_length*arm_length*arm_length)
+            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -974,15 +1073,25 @@ class TripodP3Z(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         apart_2_x = k.apart_2_x
+        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
         apart_2_y = k.apart_2_y
+        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
         apart_3_x = k.apart_3_x
+        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
         apart_3_y = k.apart_3_y
-        arm_length = k.arm_length
+        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         normal_z = k.normal_z
+        normal_z_squared = k.normal_z_squared
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        one_by_arm_length = k.one_by_arm_length
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_share_2 = k.part_of_share_2
+        part_of_share_3 = k.part_of_share_3
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
@@ -993,41 +1102,41 @@ class TripodP3Z(OffsetKinematics):
         apart_3_z = a3 - a1
         normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length*arm_length*arm_length*arm_length
-            else 1.0
-        )
-        # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y + 0.5*apart_2_z*apart_2_z
-        # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y + 0.5*apart_3_z*apart_3_z
+        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
+        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *(
+                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
+                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+            )
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *(
+                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
+                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+            )
         )
         foot_z = (
-            ((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length*arm_length - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length*arm_length):
+        if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         flange_z = a1 + foot_z + normal_z*rise
-        branch_carriage_1 = (a1 - flange_z)/arm_length
-        branch_carriage_2 = (a2 - flange_z)/arm_length
-        branch_carriage_3 = (a3 - flange_z)/arm_length
+        branch_carriage_1 = (a1 - flange_z)*one_by_arm_length
+        branch_carriage_2 = (a2 - flange_z)*one_by_arm_length
+        branch_carriage_3 = (a3 - flange_z)*one_by_arm_length
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

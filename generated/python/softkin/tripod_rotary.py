@@ -24,9 +24,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 72 additions, 110 multiplications, 10 divisions, 13 square roots, 6 sines
-    inverse: 119 additions, 152 multiplications, 33 divisions, 29 square roots, 3 sines
-    inverse, all 8 branches open: 945 additions, 1216 multiplications, 264 divisions, 232 square roots, 24 sines
+    forward: 63 additions, 69 multiplications, 5 divisions, 2 square roots, 6 sines
+    inverse: 96 additions, 73 multiplications, 22 divisions, 9 square roots, 3 sines
+    inverse, all 8 branches open: 761 additions, 584 multiplications, 176 divisions, 72 square roots, 24 sines
 
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -103,6 +103,25 @@ class Constants(NamedTuple):
     fixed_length_2: float
     assembly_sign: float
     sin_max_angle_ball_joint: float
+    part_of_normal_divisor: float
+    arm_length_2_squared: float
+    arm_length_2_squared_times_rounding: float
+    arm_length_1_times_root_of_3_times_half: float
+    part_of_pivot_2_y: float
+    fixed_length_1_minus_arm_1_radius: float
+    half_arm_length_1: float
+    part_of_pivot_2_x: float
+    half_by_arm_length_2: float
+    arm_length_1_times_shortest_link: float
+    part_of_scaled_cosine_a1: float
+    part_of_divisor_a2: float
+    twice_arm_length_1: float
+    part_of_type2_rods_coplanar: float
+    root_of_3_times_half_by_arm_length_2: float
+    part_of_margin_rods_coplanar: float
+    part_of_determinant_divisor: float
+    part_of_slope_1_by_x: float
+    arm_length_1_times_root_of_3: float
 
 
 class TripodRotary(OffsetKinematics):
@@ -370,6 +389,26 @@ class TripodRotary(OffsetKinematics):
         )
         assembly_sign = 1.0 if tcp_above else -1.0  # assembly mode of this machine
         sin_max_angle_ball_joint = sin(DEGREE*max_angle_ball_joint)
+        part_of_normal_divisor = 1e-22*arm_length_2*arm_length_2*arm_length_2*arm_length_2
+        arm_length_2_squared = arm_length_2*arm_length_2
+        arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
+        root_of_3 = root(3.0)
+        arm_length_1_times_root_of_3_times_half = 0.5*arm_length_1*root_of_3
+        part_of_pivot_2_y = 0.5*fixed_length_1*root_of_3 - 0.5*arm_1_radius*root_of_3
+        fixed_length_1_minus_arm_1_radius = fixed_length_1 - arm_1_radius
+        half_arm_length_1 = 0.5*arm_length_1
+        part_of_pivot_2_x = 0.5*arm_1_radius - 0.5*fixed_length_1
+        half_by_arm_length_2 = 0.5/arm_length_2
+        arm_length_1_times_shortest_link = 1e-9*arm_length_1
+        part_of_scaled_cosine_a1 = 2.0*arm_length_1*fixed_length_1_minus_arm_1_radius
+        part_of_divisor_a2 = 5e-10*arm_length_1
+        twice_arm_length_1 = 2.0*arm_length_1
+        part_of_type2_rods_coplanar = assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
+        root_of_3_times_half_by_arm_length_2 = 0.5*root_of_3/arm_length_2
+        part_of_margin_rods_coplanar = arm_length_2*arm_length_2*arm_length_2
+        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
+        part_of_slope_1_by_x = 2.0*fixed_length_1 - 2.0*arm_1_radius
+        arm_length_1_times_root_of_3 = arm_length_1*root_of_3
         return Constants(
             arm_length_1=arm_length_1, arm_length_2=arm_length_2, arm_1_radius=arm_1_radius,
             stewart_radius=stewart_radius, distance=distance, max_angle_ball_joint=max_angle_ball_joint,
@@ -381,33 +420,51 @@ class TripodRotary(OffsetKinematics):
             lower_a3=effective_lower_a3, upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3,
             highest_a3=highest_a3, single_a3=single_a3, mid_a3=mid_a3, machine_scale=machine_scale,
             fixed_length_1=fixed_length_1, fixed_length_2=fixed_length_2, assembly_sign=assembly_sign,
-            sin_max_angle_ball_joint=sin_max_angle_ball_joint,
+            sin_max_angle_ball_joint=sin_max_angle_ball_joint, part_of_normal_divisor=part_of_normal_divisor,
+            arm_length_2_squared=arm_length_2_squared,
+            arm_length_2_squared_times_rounding=arm_length_2_squared_times_rounding,
+            arm_length_1_times_root_of_3_times_half=arm_length_1_times_root_of_3_times_half,
+            part_of_pivot_2_y=part_of_pivot_2_y, fixed_length_1_minus_arm_1_radius=fixed_length_1_minus_arm_1_radius,
+            half_arm_length_1=half_arm_length_1, part_of_pivot_2_x=part_of_pivot_2_x,
+            half_by_arm_length_2=half_by_arm_length_2,
+            arm_length_1_times_shortest_link=arm_length_1_times_shortest_link,
+            part_of_scaled_cosine_a1=part_of_scaled_cosine_a1, part_of_divisor_a2=part_of_divisor_a2,
+            twice_arm_length_1=twice_arm_length_1, part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
+            root_of_3_times_half_by_arm_length_2=root_of_3_times_half_by_arm_length_2,
+            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
+            part_of_determinant_divisor=part_of_determinant_divisor, part_of_slope_1_by_x=part_of_slope_1_by_x,
+            arm_length_1_times_root_of_3=arm_length_1_times_root_of_3,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_1_radius = k.arm_1_radius
         arm_length_1 = k.arm_length_1
+        arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
         arm_length_2 = k.arm_length_2
+        arm_length_2_squared = k.arm_length_2_squared
+        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
         assembly_sign = k.assembly_sign
-        fixed_length_1 = k.fixed_length_1
+        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
         fixed_length_2 = k.fixed_length_2
+        half_arm_length_1 = k.half_arm_length_1
+        half_by_arm_length_2 = k.half_by_arm_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod 2
-        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        # rod 3
-        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
@@ -419,55 +476,52 @@ class TripodRotary(OffsetKinematics):
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length_2*arm_length_2*arm_length_2*arm_length_2):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length_2*arm_length_2*arm_length_2*arm_length_2
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_z*apart_2_z + 0.5*pivot_2_y*pivot_2_y
+        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_z*apart_3_z + 0.5*pivot_3_y*pivot_3_y
+        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length_2*arm_length_2 - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length_2*arm_length_2):
+        if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + normal_y*rise
         z = foot_z + pivot_1_z + normal_z*rise
-        span_1_x = arm_1_radius + x - fixed_length_1  # rod 1
+        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
         span_1_z = z - fixed_length_2  # rod 1
         branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
-        span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
-        span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
-        branch_knee_2 = 0.5*(root(3.0)*span_2_y*sin_a2 - 2.0*span_1_z*cos_a2 - span_2_x*sin_a2)/arm_length_2
-        span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
-        branch_knee_3 = 0.5*(-2.0*span_1_z*cos_a3 - span_2_x*sin_a3 - root(3.0)*span_3_y*sin_a3)/arm_length_2
+        span_2_x = x - part_of_pivot_2_x  # rod 2
+        span_2_y = y - part_of_pivot_2_y  # rod 2
+        root_of_3_2 = root(3.0)
+        branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
+        span_3_y = part_of_pivot_2_y + y  # rod 3
+        branch_knee_3 = ((-span_2_x - root_of_3_2*span_3_y)*sin_a3 - 2.0*span_1_z*cos_a3)*half_by_arm_length_2
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -478,25 +532,28 @@ class TripodRotary(OffsetKinematics):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_1_radius = k.arm_1_radius
         arm_length_1 = k.arm_length_1
-        arm_length_2 = k.arm_length_2
-        fixed_length_1 = k.fixed_length_1
+        arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
+        arm_length_2_squared = k.arm_length_2_squared
+        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
+        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
         fixed_length_2 = k.fixed_length_2
+        half_arm_length_1 = k.half_arm_length_1
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod 2
-        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        # rod 3
-        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
@@ -508,42 +565,38 @@ class TripodRotary(OffsetKinematics):
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length_2*arm_length_2*arm_length_2*arm_length_2):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length_2*arm_length_2*arm_length_2*arm_length_2
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_z*apart_2_z + 0.5*pivot_2_y*pivot_2_y
+        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_z*apart_3_z + 0.5*pivot_3_y*pivot_3_y
+        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length_2*arm_length_2 - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length_2*arm_length_2):
+        if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -556,12 +609,15 @@ class TripodRotary(OffsetKinematics):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        arm_1_radius = k.arm_1_radius
         arm_length_1 = k.arm_length_1
+        arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
+        arm_length_1_times_shortest_link = k.arm_length_1_times_shortest_link
         arm_length_2 = k.arm_length_2
-        assembly_sign = k.assembly_sign
-        fixed_length_1 = k.fixed_length_1
+        arm_length_2_squared = k.arm_length_2_squared
+        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
         fixed_length_2 = k.fixed_length_2
+        half_arm_length_1 = k.half_arm_length_1
+        half_by_arm_length_2 = k.half_by_arm_length_2
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -569,134 +625,134 @@ class TripodRotary(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_divisor_a2 = k.part_of_divisor_a2
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_scaled_cosine_a1 = k.part_of_scaled_cosine_a1
+        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
+        root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
         sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
+        twice_arm_length_1 = k.twice_arm_length_1
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = arm_1_radius + x - fixed_length_1  # rod 1
+        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
         span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*arm_length_1):
+        if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
-        swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = effective_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
+        part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z)*z - part_of_scaled_cosine_a1
         # cosine times the scale, seen from the origin
-        scaled_cosine_a1 = (
-            2.0*(arm_1_radius - fixed_length_1)*arm_length_1 + (fixed_length_1 - arm_1_radius - span_1_x)*x
-            + (fixed_length_2 - span_1_z)*z - y*y
-        )
-        one_less_cos_a1 = 2.0*arm_length_1*divisor_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
-        one_plus_cos_a1 = scaled_cosine_a1 + 2.0*arm_length_1*divisor_a1  # 1 + cosine, times the scale
+        scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
+        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
+        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
+                    arm_length_2_squared
+                    + 0.5*abs(
+                        (arm_length_1 - effective_a1)*(arm_length_1 - effective_a1)
+                        - (arm_length_2 + y)*(arm_length_2 - y)
                     )
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
-                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
+                    + 0.5*(arm_length_1 - effective_a1)*(arm_length_1 - effective_a1)
+                    + 0.5*(arm_length_1 + effective_a1)*(arm_length_1 + effective_a1)
+                    + (y - arm_length_2)*(arm_length_2 + y)
                     - 0.5*abs(
-                        (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
+                        (arm_length_1 + effective_a1)*(arm_length_1 + effective_a1)
+                        - (arm_length_2 + y)*(arm_length_2 - y)
                     )
-                    - (arm_length_2 + y)*(arm_length_2 - y)
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
-        span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
-        along_a2 = span_2_x - root(3.0)*span_2_y
+        span_2_x = x - part_of_pivot_2_x  # rod 2
+        span_2_y = y - part_of_pivot_2_y  # rod 2
+        root_of_3_2 = root(3.0)
+        along_a2 = span_2_x - root_of_3_2*span_2_y
         across_a2 = 2.0*span_1_z
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        across_a2_squared = across_a2*across_a2
+        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 5e-10*arm_length_1):
+        if not (effective_a2 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
-        swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = arm_length_1*effective_a2  # a2: law of cosines in the rod 2 equation
+        part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = (
-            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*x
-            + (span_2_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1)*y
-            + (span_1_z - fixed_length_2)*z
-            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
-        )
-        one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
-        one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1*divisor_a2  # 1 + cosine, times the scale
+        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
+        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
+        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                    arm_length_2_squared
+                    + 0.5*abs(
+                        (arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
                         + (
-                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
                     )
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                    + 0.5*(arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
+                    + 0.5*(arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
+                    + (
+                        0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
+                    )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
                     - 0.5*abs(
-                        (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                        (arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
                         + (
-                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
                     )
-                    - (
-                        arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x
-                    )*(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
-        along_a3 = span_2_x + root(3.0)*span_3_y
-        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
+        span_3_y = part_of_pivot_2_y + y  # rod 3
+        along_a3 = span_2_x + root_of_3_2*span_3_y
+        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > 5e-10*arm_length_1):
+        if not (effective_a3 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
-        swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
+        swing_scale_a3 = arm_length_1*effective_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
-        scaled_cosine_a3 = (
-            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*x
-            + (span_3_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius)*y
-            + (span_1_z - fixed_length_2)*z
-            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
-        )
-        one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
-        one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1*divisor_a3  # 1 + cosine, times the scale
+        scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
+        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
+        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                        - (
-                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    arm_length_2_squared
+                    + 0.5*abs(
+                        (arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
+                        + (
+                            0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
                     )
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
+                    + 0.5*(arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
+                    + 0.5*(arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
+                    + (
+                        0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
+                    )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
                     - 0.5*abs(
-                        (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
-                        - (
-                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                        (arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
+                        + (
+                            0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
                     )
-                    - (
-                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
@@ -704,45 +760,42 @@ class TripodRotary(OffsetKinematics):
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
-        cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
-        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
+        cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
-        sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
+        sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
-        cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
+        cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
         rod_2_x = x - pivot_2_x
-        # rod 2
-        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
-        sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
+        sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/effective_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
-        cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
+        cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
         rod_3_x = x - pivot_3_x
-        # rod 3
-        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
         rod_3_y = y - pivot_3_y
-        sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
+        sin_a3 = (along_a3*sin_swing_a3 - across_a2*cos_swing_a3)/effective_a3
         pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            assembly_sign
+            -part_of_type2_rods_coplanar
             *(
-                rod_1_x*rod_2_y*rod_3_z + rod_1_z*rod_2_x*rod_3_y + rod_2_z*rod_3_x*y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_z*rod_2_y*rod_3_x - rod_2_x*rod_3_z*y
+                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
+                + (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
             )
-            /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -754,7 +807,7 @@ class TripodRotary(OffsetKinematics):
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             missing = (
                 (
-                    arctan2(abs(y)/arm_length_2 + 0.0, root(1.0 - y*y/(arm_length_2*arm_length_2)) + 0.0)
+                    arctan2(abs(y)/arm_length_2 + 0.0, root(1.0 - y*y/arm_length_2_squared) + 0.0)
                     - arctan2(
                         sin_max_angle_ball_joint + 0.0,
                         root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
@@ -763,21 +816,15 @@ class TripodRotary(OffsetKinematics):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
+        part = root_of_3_times_half_by_arm_length_2*x
+        half_by_arm_length_2_times_y = half_by_arm_length_2*y
         # ball joint of rod 2
-        if not (abs(0.5*y/arm_length_2 + 0.5*root(3.0)*x/arm_length_2) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint):
             missing = (
                 (
                     arctan2(
-                        abs(0.5*y/arm_length_2 + 0.5*root(3.0)*x/arm_length_2) + 0.0,
-                        (
-                            root(
-                                1.0
-                                - (
-                                    0.5*y/arm_length_2 + 0.5*root(3.0)*x/arm_length_2
-                                )*(0.5*y/arm_length_2 + 0.5*root(3.0)*x/arm_length_2)
-                            )
-                            + 0.0
-                        ),
+                        abs(half_by_arm_length_2_times_y + part) + 0.0,
+                        root(1.0 + (-half_by_arm_length_2_times_y - part)*(half_by_arm_length_2_times_y + part)) + 0.0,
                     )
                     - arctan2(
                         sin_max_angle_ball_joint + 0.0,
@@ -788,20 +835,12 @@ class TripodRotary(OffsetKinematics):
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
-        if not (abs(0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint):
             missing = (
                 (
                     arctan2(
-                        abs(0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2) + 0.0,
-                        (
-                            root(
-                                1.0
-                                - (
-                                    0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2
-                                )*(0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2)
-                            )
-                            + 0.0
-                        ),
+                        abs(half_by_arm_length_2_times_y - part) + 0.0,
+                        root(1.0 + (part - half_by_arm_length_2_times_y)*(half_by_arm_length_2_times_y - part)) + 0.0,
                     )
                     - arctan2(
                         sin_max_angle_ball_joint + 0.0,
@@ -877,26 +916,32 @@ class TripodRotary(OffsetKinematics):
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_1_radius = k.arm_1_radius
         arm_length_1 = k.arm_length_1
+        arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
         arm_length_2 = k.arm_length_2
+        arm_length_2_squared = k.arm_length_2_squared
+        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
         assembly_sign = k.assembly_sign
-        fixed_length_1 = k.fixed_length_1
+        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
         fixed_length_2 = k.fixed_length_2
+        half_arm_length_1 = k.half_arm_length_1
+        half_by_arm_length_2 = k.half_by_arm_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_margin_rods_coplanar = k.part_of_margin_rods_coplanar
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod 2
-        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        # rod 3
-        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
@@ -908,55 +953,52 @@ class TripodRotary(OffsetKinematics):
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length_2*arm_length_2*arm_length_2*arm_length_2):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length_2*arm_length_2*arm_length_2*arm_length_2
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_z*apart_2_z + 0.5*pivot_2_y*pivot_2_y
+        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_z*apart_3_z + 0.5*pivot_3_y*pivot_3_y
+        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length_2*arm_length_2 - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length_2*arm_length_2):
+        if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = arm_1_radius + x - fixed_length_1  # rod 1
+        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
         z = foot_z + pivot_1_z + normal_z*rise
         span_1_z = z - fixed_length_2  # rod 1
         margin_stretched_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
-        span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2
         y = foot_y + normal_y*rise
-        span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
-        margin_stretched_2 = 0.5*(root(3.0)*span_2_y*sin_a2 - 2.0*span_1_z*cos_a2 - span_2_x*sin_a2)/arm_length_2
-        span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
-        margin_stretched_3 = 0.5*(-2.0*span_1_z*cos_a3 - span_2_x*sin_a3 - root(3.0)*span_3_y*sin_a3)/arm_length_2
+        span_2_y = y - part_of_pivot_2_y  # rod 2
+        root_of_3_2 = root(3.0)
+        margin_stretched_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
+        span_3_y = part_of_pivot_2_y + y  # rod 3
+        margin_stretched_3 = ((-span_2_x - root_of_3_2*span_3_y)*sin_a3 - 2.0*span_1_z*cos_a3)*half_by_arm_length_2
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
         rod_2_x = x - pivot_2_x
@@ -967,10 +1009,10 @@ class TripodRotary(OffsetKinematics):
         rod_3_z = z - pivot_3_z
         margin_rods_coplanar = (
             (
-                rod_1_x*rod_2_y*rod_3_z + rod_1_z*rod_2_x*rod_3_y + rod_2_z*rod_3_x*y - rod_1_x*rod_2_z*rod_3_y
-                - rod_1_z*rod_2_y*rod_3_x - rod_2_x*rod_3_z*y
+                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) - (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
+                - (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
             )
-            /(arm_length_2*arm_length_2*arm_length_2)
+            /part_of_margin_rods_coplanar
         )
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, margin_rods_coplanar)
 
@@ -980,133 +1022,142 @@ class TripodRotary(OffsetKinematics):
         k = self._constants
         arm_1_radius = k.arm_1_radius
         arm_length_1 = k.arm_length_1
-        arm_length_2 = k.arm_length_2
+        arm_length_1_times_root_of_3 = k.arm_length_1_times_root_of_3
+        arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
+        arm_length_2_squared = k.arm_length_2_squared
+        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
         assembly_sign = k.assembly_sign
         fixed_length_1 = k.fixed_length_1
+        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
         fixed_length_2 = k.fixed_length_2
-        machine_scale = k.machine_scale
+        half_arm_length_1 = k.half_arm_length_1
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_determinant_divisor = k.part_of_determinant_divisor
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_slope_1_by_x = k.part_of_slope_1_by_x
+        twice_arm_length_1 = k.twice_arm_length_1
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod 2
-        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        # rod 3
-        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
+        arm_length_1_times_sin_a1 = arm_length_1*sin_a1
+        pivot_1_z = fixed_length_2 - arm_length_1_times_sin_a1  # rod 1
         sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
+        arm_length_1_times_sin_a2 = arm_length_1*sin_a2
+        pivot_2_z = fixed_length_2 - arm_length_1_times_sin_a2  # rod 2
         apart_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
+        arm_length_1_times_sin_a3 = arm_length_1*sin_a3
+        pivot_3_z = fixed_length_2 - arm_length_1_times_sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length_2*arm_length_2*arm_length_2*arm_length_2):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length_2*arm_length_2*arm_length_2*arm_length_2
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_z*apart_2_z + 0.5*pivot_2_y*pivot_2_y
+        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_z*apart_3_z + 0.5*pivot_3_y*pivot_3_y
+        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length_2*arm_length_2 - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length_2*arm_length_2):
+        if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
-        slope_1_by_x = 2.0*arm_1_radius + 2.0*x + 2.0*arm_length_1*cos_a1 - 2.0*fixed_length_1
+        twice_x = -2.0*x
+        slope_1_by_x = twice_arm_length_1*cos_a1 - part_of_slope_1_by_x - twice_x
         y = foot_y + normal_y*rise
         slope_1_by_y = 2.0*y
         z = foot_z + pivot_1_z + normal_z*rise
-        slope_1_by_z = 2.0*z + 2.0*arm_length_1*sin_a1 - 2.0*fixed_length_2
-        slope_2_by_x = fixed_length_1 + 2.0*x - arm_1_radius - arm_length_1*cos_a2
-        slope_2_by_y = 2.0*y + root(3.0)*(arm_1_radius + arm_length_1*cos_a2) - root(3.0)*fixed_length_1
-        slope_2_by_z = 2.0*z + 2.0*arm_length_1*sin_a2 - 2.0*fixed_length_2
-        slope_3_by_x = fixed_length_1 + 2.0*x - arm_1_radius - arm_length_1*cos_a3
-        slope_3_by_y = 2.0*y + root(3.0)*fixed_length_1 - root(3.0)*(arm_1_radius + arm_length_1*cos_a3)
-        slope_3_by_z = 2.0*z + 2.0*arm_length_1*sin_a3 - 2.0*fixed_length_2
+        z_minus_fixed_length_2 = z - fixed_length_2
+        twice_z_minus_fixed_length_2 = -2.0*z_minus_fixed_length_2
+        slope_1_by_z = twice_arm_length_1*sin_a1 - twice_z_minus_fixed_length_2
+        arm_length_1_times_cos_a2 = arm_length_1*cos_a2
+        root_of_3_2 = root(3.0)
+        part_of_slope_2_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a2)*root_of_3_2
+        slope_2_by_y = slope_1_by_y - part_of_slope_2_by_y
+        slope_2_by_z = twice_arm_length_1*sin_a2 - twice_z_minus_fixed_length_2
+        arm_length_1_times_cos_a3 = arm_length_1*cos_a3
+        part_of_slope_3_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a3)*root_of_3_2
+        slope_3_by_y = part_of_slope_3_by_y + slope_1_by_y
+        slope_3_by_z = twice_arm_length_1*sin_a3 - twice_z_minus_fixed_length_2
+        part_of_determinant = slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z
+        part_of_slope_2_by_x = fixed_length_1_minus_arm_1_radius - twice_x
+        slope_2_by_x = part_of_slope_2_by_x - arm_length_1_times_cos_a2
+        slope_3_by_x = part_of_slope_2_by_x - arm_length_1_times_cos_a3
+        part_of_determinant_2 = slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x
+        part_of_determinant_3 = slope_2_by_y*slope_3_by_x - slope_2_by_x*slope_3_by_y
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
-            slope_1_by_x*slope_2_by_y*slope_3_by_z + slope_1_by_y*slope_2_by_z*slope_3_by_x
-            + slope_1_by_z*slope_2_by_x*slope_3_by_y - slope_1_by_x*slope_2_by_z*slope_3_by_y
-            - slope_1_by_y*slope_2_by_x*slope_3_by_z - slope_1_by_z*slope_2_by_y*slope_3_by_x
+            -part_of_determinant*slope_1_by_x - part_of_determinant_2*slope_1_by_y
+            - part_of_determinant_3*slope_1_by_z
         )
         # nothing controls the plate
-        if not (abs(determinant) > 1e-11*machine_scale*machine_scale*machine_scale):
+        if not (abs(determinant) > part_of_determinant_divisor):
             return Status.IMPOSSIBLE
         slope_1_by_a1 = (
-            2.0*arm_length_1*(z + arm_length_1*sin_a1 - fixed_length_2)*cos_a1
-            - 2.0*(arm_1_radius + x + arm_length_1*cos_a1 - fixed_length_1)*arm_length_1*sin_a1
+            twice_arm_length_1*((arm_length_1_times_sin_a1 + z_minus_fixed_length_2)*cos_a1 + (pivot_1_x - x)*sin_a1)
         )
-        determinant_divisor = (
-            determinant
-            if abs(determinant) > 1e-11*machine_scale*machine_scale*machine_scale
-            else 1.0
-        )
+        one_by_determinant_divisor = 1.0/determinant
+        part = one_by_determinant_divisor*slope_1_by_a1
         slope_2_by_a2 = (
-            2.0*arm_length_1*(z + arm_length_1*sin_a2 - fixed_length_2)*cos_a2
-            + (0.5*fixed_length_1 + x - 0.5*arm_1_radius - 0.5*arm_length_1*cos_a2)*arm_length_1*sin_a2
-            - (
-                y + 0.5*root(3.0)*(arm_1_radius + arm_length_1*cos_a2) - 0.5*root(3.0)*fixed_length_1
-            )*root(3.0)*arm_length_1*sin_a2
+            (arm_length_1_times_root_of_3*(0.5*part_of_slope_2_by_y - y) - arm_length_1*(pivot_2_x - x))*sin_a2
+            + (arm_length_1_times_sin_a2 + z_minus_fixed_length_2)*twice_arm_length_1*cos_a2
         )
+        part_2 = one_by_determinant_divisor*slope_2_by_a2
         slope_3_by_a3 = (
-            2.0*arm_length_1*(z + arm_length_1*sin_a3 - fixed_length_2)*cos_a3
-            + (0.5*fixed_length_1 + x - 0.5*arm_1_radius - 0.5*arm_length_1*cos_a3)*arm_length_1*sin_a3
-            + root(3.0)*arm_length_1*(
-                y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*(arm_1_radius + arm_length_1*cos_a3)
-            )*sin_a3
+            (arm_length_1_times_root_of_3*(0.5*part_of_slope_3_by_y + y) - arm_length_1*(pivot_3_x - x))*sin_a3
+            + (arm_length_1_times_sin_a3 + z_minus_fixed_length_2)*twice_arm_length_1*cos_a3
         )
+        part_3 = one_by_determinant_divisor*slope_3_by_a3
         return (
             (
-                (slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z)*slope_1_by_a1/determinant_divisor,
-                (slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*slope_3_by_a3/determinant_divisor,
+                part*part_of_determinant, -(slope_1_by_z*slope_3_by_y - slope_1_by_y*slope_3_by_z)*part_2,
+                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
             ),
             (
-                slope_1_by_a1*(slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x)/determinant_divisor,
-                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x)*slope_3_by_a3/determinant_divisor,
+                part*part_of_determinant_2,
+                -part_2*(slope_1_by_x*slope_3_by_z - slope_1_by_z*slope_3_by_x),
+                part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
             ),
             (
-                (slope_2_by_y*slope_3_by_x - slope_2_by_x*slope_3_by_y)*slope_1_by_a1/determinant_divisor,
-                (slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x)*slope_2_by_a2/determinant_divisor,
-                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*slope_3_by_a3/determinant_divisor,
+                part*part_of_determinant_3,
+                part_2*(slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x),
+                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
             ),
         )
 
@@ -1124,12 +1175,15 @@ class TripodRotary(OffsetKinematics):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        arm_1_radius = k.arm_1_radius
         arm_length_1 = k.arm_length_1
+        arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
+        arm_length_1_times_shortest_link = k.arm_length_1_times_shortest_link
         arm_length_2 = k.arm_length_2
-        assembly_sign = k.assembly_sign
-        fixed_length_1 = k.fixed_length_1
+        arm_length_2_squared = k.arm_length_2_squared
+        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
         fixed_length_2 = k.fixed_length_2
+        half_arm_length_1 = k.half_arm_length_1
+        half_by_arm_length_2 = k.half_by_arm_length_2
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -1137,10 +1191,17 @@ class TripodRotary(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_divisor_a2 = k.part_of_divisor_a2
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
+        part_of_scaled_cosine_a1 = k.part_of_scaled_cosine_a1
+        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
+        root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
         sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
+        twice_arm_length_1 = k.twice_arm_length_1
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -1149,128 +1210,121 @@ class TripodRotary(OffsetKinematics):
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # the flange behind the point
-        span_1_x = arm_1_radius + flange_x - fixed_length_1  # rod 1
+        span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1
         flange_z = z - point_z  # the flange behind the point
         span_1_z = flange_z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*arm_length_1):
+        if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
-        swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = effective_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
         flange_y = y - point_y  # the flange behind the point
+        part_of_scaled_cosine_a1_2 = part_of_scaled_cosine_a1 - (fixed_length_2 - span_1_z)*flange_z
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = (
-            2.0*(arm_1_radius - fixed_length_1)*arm_length_1 + (fixed_length_1 - arm_1_radius - span_1_x)*flange_x
-            + (fixed_length_2 - span_1_z)*flange_z - flange_y*flange_y
+            (fixed_length_1_minus_arm_1_radius - span_1_x)*flange_x - part_of_scaled_cosine_a1_2 - flange_y*flange_y
         )
-        one_less_cos_a1 = 2.0*arm_length_1*divisor_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
-        one_plus_cos_a1 = scaled_cosine_a1 + 2.0*arm_length_1*divisor_a1  # 1 + cosine, times the scale
+        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
+        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
+                    arm_length_2_squared
+                    + 0.5*abs(
+                        (arm_length_1 - effective_a1)*(arm_length_1 - effective_a1)
                         - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
                     )
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
-                    + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
+                    + 0.5*(arm_length_1 - effective_a1)*(arm_length_1 - effective_a1)
+                    + 0.5*(arm_length_1 + effective_a1)*(arm_length_1 + effective_a1)
+                    + (flange_y - arm_length_2)*(arm_length_2 + flange_y)
                     - 0.5*abs(
-                        (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
+                        (arm_length_1 + effective_a1)*(arm_length_1 + effective_a1)
                         - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
                     )
-                    - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = 0.5*fixed_length_1 + flange_x - 0.5*arm_1_radius  # rod 2
-        span_2_y = flange_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
-        along_a2 = span_2_x - root(3.0)*span_2_y
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
+        span_2_y = flange_y - part_of_pivot_2_y  # rod 2
+        root_of_3_2 = root(3.0)
+        along_a2 = span_2_x - root_of_3_2*span_2_y
         across_a2 = 2.0*span_1_z
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        across_a2_squared = across_a2*across_a2
+        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 5e-10*arm_length_1):
+        if not (effective_a2 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
-        swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = arm_length_1*effective_a2  # a2: law of cosines in the rod 2 equation
+        part_of_scaled_cosine_a2 = flange_x*(part_of_pivot_2_x - span_2_x) - part_of_scaled_cosine_a1_2
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = (
-            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*flange_x
-            + (span_2_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1)*flange_y
-            + (span_1_z - fixed_length_2)*flange_z
-            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
-        )
-        one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
-        one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1*divisor_a2  # 1 + cosine, times the scale
+        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - flange_y*(part_of_pivot_2_y - span_2_y)
+        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
+        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                    arm_length_2_squared
+                    + 0.5*abs(
+                        (arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
                         + (
-                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
                     )
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                    + 0.5*(arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
+                    + 0.5*(arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
+                    + (
+                        0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
+                    )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
                     - 0.5*abs(
-                        (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                        (arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
                         + (
-                            0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                        )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
                     )
-                    - (
-                        arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x
-                    )*(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_y = flange_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
-        along_a3 = span_2_x + root(3.0)*span_3_y
-        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
+        span_3_y = flange_y + part_of_pivot_2_y  # rod 3
+        along_a3 = span_2_x + root_of_3_2*span_3_y
+        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > 5e-10*arm_length_1):
+        if not (effective_a3 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
-        swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
+        swing_scale_a3 = arm_length_1*effective_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
-        scaled_cosine_a3 = (
-            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*flange_x
-            + (span_3_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius)*flange_y
-            + (span_1_z - fixed_length_2)*flange_z
-            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
-        )
-        one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
-        one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1*divisor_a3  # 1 + cosine, times the scale
+        scaled_cosine_a3 = flange_y*(part_of_pivot_2_y + span_3_y) - part_of_scaled_cosine_a2
+        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
+        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             missing = abs(
                 arm_length_2
                 - root(
-                    0.5*abs(
-                        (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                        - (
-                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                    arm_length_2_squared
+                    + 0.5*abs(
+                        (arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
+                        + (
+                            0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
                     )
-                    + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                    + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
+                    + 0.5*(arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
+                    + 0.5*(arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
+                    + (
+                        0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
+                    )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
                     - 0.5*abs(
-                        (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
-                        - (
-                            arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                        )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+                        (arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
+                        + (
+                            0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
                     )
-                    - (
-                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
@@ -1278,44 +1332,42 @@ class TripodRotary(OffsetKinematics):
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
-        cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
-        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
+        cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
         rod_1_x = flange_x - pivot_1_x
-        sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
+        sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = flange_z - pivot_1_z
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
-        cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
+        cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
         rod_2_x = flange_x - pivot_2_x
-        # rod 2
-        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
         rod_2_y = flange_y - pivot_2_y
-        sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
+        sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/effective_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = flange_z - pivot_2_z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
-        cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
+        cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
         rod_3_x = flange_x - pivot_3_x
-        # rod 3
-        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
         rod_3_y = flange_y - pivot_3_y
-        sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
+        sin_a3 = (along_a3*sin_swing_a3 - across_a2*cos_swing_a3)/effective_a3
         pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z = flange_z - pivot_3_z
         type2_rods_coplanar = (
-            (
-                flange_y*rod_2_z*rod_3_x + rod_1_x*rod_2_y*rod_3_z + rod_1_z*rod_2_x*rod_3_y
-                - flange_y*rod_2_x*rod_3_z - rod_1_x*rod_2_z*rod_3_y - rod_1_z*rod_2_y*rod_3_x
+            -(
+                flange_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x) + (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
             )
-            *assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
+            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -1327,9 +1379,7 @@ class TripodRotary(OffsetKinematics):
         if not (abs(flange_y)/arm_length_2 <= sin_max_angle_ball_joint):
             missing = (
                 (
-                    arctan2(
-                        abs(flange_y)/arm_length_2 + 0.0, root(1.0 - flange_y*flange_y/(arm_length_2*arm_length_2)) + 0.0,
-                    )
+                    arctan2(abs(flange_y)/arm_length_2 + 0.0, root(1.0 - flange_y*flange_y/arm_length_2_squared) + 0.0)
                     - arctan2(
                         sin_max_angle_ball_joint + 0.0,
                         root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
@@ -1338,18 +1388,20 @@ class TripodRotary(OffsetKinematics):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
+        part = flange_x*root_of_3_times_half_by_arm_length_2
+        half_by_arm_length_2_times_flange_y = flange_y*half_by_arm_length_2
         # ball joint of rod 2
-        if not (abs(0.5*flange_y/arm_length_2 + 0.5*root(3.0)*flange_x/arm_length_2) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_flange_y + part) <= sin_max_angle_ball_joint):
             missing = (
                 (
                     arctan2(
-                        abs(0.5*flange_y/arm_length_2 + 0.5*root(3.0)*flange_x/arm_length_2) + 0.0,
+                        abs(half_by_arm_length_2_times_flange_y + part) + 0.0,
                         (
                             root(
                                 1.0
-                                - (
-                                    0.5*flange_y/arm_length_2 + 0.5*root(3.0)*flange_x/arm_length_2
-                                )*(0.5*flange_y/arm_length_2 + 0.5*root(3.0)*flange_x/arm_length_2)
+                                + (
+                                    -half_by_arm_length_2_times_flange_y - part
+                                )*(half_by_arm_length_2_times_flange_y + part)
                             )
                             + 0.0
                         ),
@@ -1363,17 +1415,17 @@ class TripodRotary(OffsetKinematics):
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
-        if not (abs(0.5*root(3.0)*flange_x/arm_length_2 - 0.5*flange_y/arm_length_2) <= sin_max_angle_ball_joint):
+        if not (abs(half_by_arm_length_2_times_flange_y - part) <= sin_max_angle_ball_joint):
             missing = (
                 (
                     arctan2(
-                        abs(0.5*root(3.0)*flange_x/arm_length_2 - 0.5*flange_y/arm_length_2) + 0.0,
+                        abs(half_by_arm_length_2_times_flange_y - part) + 0.0,
                         (
                             root(
                                 1.0
-                                - (
-                                    0.5*root(3.0)*flange_x/arm_length_2 - 0.5*flange_y/arm_length_2
-                                )*(0.5*root(3.0)*flange_x/arm_length_2 - 0.5*flange_y/arm_length_2)
+                                + (
+                                    part - half_by_arm_length_2_times_flange_y
+                                )*(half_by_arm_length_2_times_flange_y - part)
                             )
                             + 0.0
                         ),
@@ -1407,26 +1459,31 @@ class TripodRotary(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_1_radius = k.arm_1_radius
         arm_length_1 = k.arm_length_1
+        arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
         arm_length_2 = k.arm_length_2
+        arm_length_2_squared = k.arm_length_2_squared
+        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
         assembly_sign = k.assembly_sign
-        fixed_length_1 = k.fixed_length_1
+        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
         fixed_length_2 = k.fixed_length_2
+        half_arm_length_1 = k.half_arm_length_1
+        half_by_arm_length_2 = k.half_by_arm_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        part_of_normal_divisor = k.part_of_normal_divisor
+        part_of_pivot_2_x = k.part_of_pivot_2_x
+        part_of_pivot_2_y = k.part_of_pivot_2_y
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        # rod 2
-        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        # rod 3
-        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
@@ -1438,55 +1495,52 @@ class TripodRotary(OffsetKinematics):
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
         normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > 9.999999999999999e-23*arm_length_2*arm_length_2*arm_length_2*arm_length_2):
+        if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*arm_length_2*arm_length_2*arm_length_2*arm_length_2
-            else 1.0
-        )
         # how far centre 2 draws the foot
-        share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_z*apart_2_z + 0.5*pivot_2_y*pivot_2_y
+        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_z*apart_3_z + 0.5*pivot_3_y*pivot_3_y
+        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        one_by_normal_divisor = 1.0/normal_square
         foot_x = (
-            ((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            ((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            ((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
-            /normal_divisor
+            one_by_normal_divisor
+            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
-        height_square = arm_length_2*arm_length_2 - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
-        if not (height_square >= -1e-12*arm_length_2*arm_length_2):
+        if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square/normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_divisor)*assembly_sign
         flange_x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = arm_1_radius + flange_x - fixed_length_1  # rod 1
+        span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1
         flange_z = foot_z + pivot_1_z + normal_z*rise
         span_1_z = flange_z - fixed_length_2  # rod 1
         branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
-        span_2_x = 0.5*fixed_length_1 + flange_x - 0.5*arm_1_radius  # rod 2
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
         flange_y = foot_y + normal_y*rise
-        span_2_y = flange_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
-        branch_knee_2 = 0.5*(root(3.0)*span_2_y*sin_a2 - 2.0*span_1_z*cos_a2 - span_2_x*sin_a2)/arm_length_2
-        span_3_y = flange_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
-        branch_knee_3 = 0.5*(-2.0*span_1_z*cos_a3 - span_2_x*sin_a3 - root(3.0)*span_3_y*sin_a3)/arm_length_2
+        span_2_y = flange_y - part_of_pivot_2_y  # rod 2
+        root_of_3_2 = root(3.0)
+        branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
+        span_3_y = flange_y + part_of_pivot_2_y  # rod 3
+        branch_knee_3 = ((-span_2_x - root_of_3_2*span_3_y)*sin_a3 - 2.0*span_1_z*cos_a3)*half_by_arm_length_2
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

@@ -17,7 +17,7 @@ Singularities:
     tool_along_a: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 15 additions, 19 multiplications, 2 divisions, 0 square roots, 4 sines
+    forward: 15 additions, 14 multiplications, 2 divisions, 0 square roots, 4 sines
     inverse: 57 additions, 57 multiplications, 17 divisions, 3 square roots, 4 sines
     inverse, all 2 branches open: 81 additions, 69 multiplications, 25 divisions, 4 square roots, 8 sines
 
@@ -84,6 +84,7 @@ class Constants(NamedTuple):
     unnoticed_shift: float
     wrist_offset: float
     unmet_offset: float
+    tool_length_times_tool_side: float
 
 
 class Wrist2(OrientationKinematics):
@@ -267,6 +268,7 @@ class Wrist2(OrientationKinematics):
         # between the axes: only a flange that keeps its orientation tells where that is
         wrist_offset = abs(roll_axis_offset_x)
         unmet_offset = abs(roll_axis_offset_y)  # turns in a way that nothing commands
+        tool_length_times_tool_side = tool_side*tool_length
         return Constants(
             tool_length=tool_length, roll_axis_offset_x=roll_axis_offset_x, roll_axis_offset_y=roll_axis_offset_y,
             roll_axis_offset_z=roll_axis_offset_z, tool_side=tool_side, offset_a=offset_a, offset_b=offset_b,
@@ -275,6 +277,7 @@ class Wrist2(OrientationKinematics):
             upper_b=effective_upper_b, unlimited_b=unlimited_b, lowest_b=lowest_b, highest_b=highest_b,
             single_b=single_b, mid_b=mid_b, machine_scale=machine_scale, unnoticed_shift=unnoticed_shift,
             wrist_offset=wrist_offset, unmet_offset=unmet_offset,
+            tool_length_times_tool_side=tool_length_times_tool_side,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -286,7 +289,7 @@ class Wrist2(OrientationKinematics):
         roll_axis_offset_x = k.roll_axis_offset_x
         roll_axis_offset_y = k.roll_axis_offset_y
         roll_axis_offset_z = k.roll_axis_offset_z
-        tool_length = k.tool_length
+        tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
         # numbers of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
@@ -294,21 +297,24 @@ class Wrist2(OrientationKinematics):
         a = DEGREE*(axis_a - offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
-        x_at_b = roll_axis_offset_x*cos_a - roll_axis_offset_y*sin_a
         b = DEGREE*(axis_b - offset_b)
         sin_b = sin(b)
-        r13_at_b = tool_side*cos_a*sin_b
-        x = x_at_b + r13_at_b*tool_length*tool_side
-        y_at_b = roll_axis_offset_y*cos_a + roll_axis_offset_x*sin_a
-        r23_at_b = tool_side*sin_a*sin_b
-        y = y_at_b + r23_at_b*tool_length*tool_side
-        cos_b = cos(b)
-        z = roll_axis_offset_z + tool_length*tool_side*cos_b
-        r11_at_b = cos_a*cos_b
-        r12 = -sin_a
-        r21_at_b = cos_b*sin_a
         r31_at_b = -tool_side*sin_b
-        return ((x, y, z), ((r11_at_b, r12, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)), (sin_b,))
+        r13_at_b = -r31_at_b*cos_a
+        x_at_b = roll_axis_offset_x*cos_a - roll_axis_offset_y*sin_a
+        x = x_at_b + r13_at_b*tool_length_times_tool_side
+        r23_at_b = -r31_at_b*sin_a
+        y_at_b = roll_axis_offset_y*cos_a + roll_axis_offset_x*sin_a
+        y = y_at_b + r23_at_b*tool_length_times_tool_side
+        cos_b = cos(b)
+        z = roll_axis_offset_z + tool_length_times_tool_side*cos_b
+        r11_at_b = cos_a*cos_b
+        r21_at_b = cos_b*sin_a
+        return (
+            (x, y, z),
+            ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)),
+            (sin_b,),
+        )
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
@@ -326,13 +332,12 @@ class Wrist2(OrientationKinematics):
         cos_b = cos(b)
         r11_at_b = cos_a*cos_b
         sin_a = sin(a)
-        r12 = -sin_a
         sin_b = sin(b)
-        r13_at_b = tool_side*cos_a*sin_b
-        r21_at_b = cos_b*sin_a
-        r23_at_b = tool_side*sin_a*sin_b
         r31_at_b = -tool_side*sin_b
-        return ((r11_at_b, r12, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b))
+        r13_at_b = -r31_at_b*cos_a
+        r21_at_b = cos_b*sin_a
+        r23_at_b = -r31_at_b*sin_a
+        return ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b))
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
@@ -440,11 +445,7 @@ class Wrist2(OrientationKinematics):
         cos_b = cos(b)
         r11_at_b = cos_a*cos_b
         r21_at_b = cos_b*sin_a
-        r12 = -sin_a
-        return (
-            (r31_at_b, r21_at_b*tool_side*cos_a - r11_at_b*tool_side*sin_a),
-            (0.0, tool_side*cos_a*cos_a - r12*tool_side*sin_a),
-        )
+        return ((r31_at_b, tool_side*(r21_at_b*cos_a - r11_at_b*sin_a)), (0.0, tool_side*(cos_a*cos_a + sin_a*sin_a)))
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
@@ -459,7 +460,7 @@ class Wrist2(OrientationKinematics):
         roll_axis_offset_x = k.roll_axis_offset_x
         roll_axis_offset_y = k.roll_axis_offset_y
         roll_axis_offset_z = k.roll_axis_offset_z
-        tool_length = k.tool_length
+        tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
         # numbers of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
@@ -468,21 +469,24 @@ class Wrist2(OrientationKinematics):
         sin_a = sin(a)
         cos_a = cos(a)
         y_at_b = roll_axis_offset_y*cos_a + roll_axis_offset_x*sin_a
+        sin_a_times_tool_side = tool_side*sin_a
         b = DEGREE*(axis_b - offset_b)
         sin_b = sin(b)
-        r23_at_b = tool_side*sin_a*sin_b
-        y = y_at_b + r23_at_b*tool_length*tool_side
-        cos_b = cos(b)
-        z = roll_axis_offset_z + tool_length*tool_side*cos_b
+        r23_at_b = sin_a_times_tool_side*sin_b
+        y = y_at_b + r23_at_b*tool_length_times_tool_side
         x_at_b = roll_axis_offset_x*cos_a - roll_axis_offset_y*sin_a
-        r13_at_b = tool_side*cos_a*sin_b
-        x = x_at_b + r13_at_b*tool_length*tool_side
+        cos_a_times_tool_side = tool_side*cos_a
+        r13_at_b = cos_a_times_tool_side*sin_b
+        x = x_at_b + r13_at_b*tool_length_times_tool_side
+        cos_b = cos(b)
+        z = roll_axis_offset_z + tool_length_times_tool_side*cos_b
+        z_minus_roll_axis_offset_z = z - roll_axis_offset_z
         return (
-            (-y, (z - roll_axis_offset_z)*tool_side*cos_a),
-            (x, (z - roll_axis_offset_z)*tool_side*sin_a),
-            (0.0, (-(x - x_at_b)*cos_a - (y - y_at_b)*sin_a)*tool_side),
-            (0.0, -tool_side*sin_a),
-            (0.0, tool_side*cos_a),
+            (-y, z_minus_roll_axis_offset_z*cos_a_times_tool_side),
+            (x, z_minus_roll_axis_offset_z*sin_a_times_tool_side),
+            (0.0, tool_side*((x_at_b - x)*cos_a + (y_at_b - y)*sin_a)),
+            (0.0, -sin_a_times_tool_side),
+            (0.0, cos_a_times_tool_side),
             (1.0, 0.0),
         )
 
@@ -498,11 +502,11 @@ class Wrist2(OrientationKinematics):
         if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
             return Status.BAD_INPUT
         flange_along = flange_axis_z*roll_axis_offset_z  # what the flange holds, along the axis that it turns about
+        part_of_flange_offset = roll_axis_offset_z - flange_along*flange_axis_z
         # off the axis that the flange turns about
         flange_offset = root(
-            (roll_axis_offset_z - flange_along*flange_axis_z)*(roll_axis_offset_z - flange_along*flange_axis_z)
-            + flange_along*flange_along*flange_axis_x*flange_axis_x
-            + flange_along*flange_along*flange_axis_y*flange_axis_y
+            part_of_flange_offset*part_of_flange_offset
+            + flange_along*flange_along*(flange_axis_x*flange_axis_x + flange_axis_y*flange_axis_y)
         )
         # a part of the end point turns with the flange
         if not (
@@ -518,8 +522,7 @@ class Wrist2(OrientationKinematics):
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self._constants
         roll_axis_offset_z = k.roll_axis_offset_z
-        tool_length = k.tool_length
-        tool_side = k.tool_side
+        tool_length_times_tool_side = k.tool_length_times_tool_side
         # numbers of reasonable size
         if not (
             -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
@@ -528,9 +531,9 @@ class Wrist2(OrientationKinematics):
             return Status.BAD_INPUT
         flange_along = flange_axis_z*roll_axis_offset_z  # what the flange holds, along the axis that it turns about
         return (
-            base_axis_x*flange_along + r13*tool_length*tool_side,
-            base_axis_y*flange_along + r23*tool_length*tool_side,
-            base_axis_z*flange_along + r33*tool_length*tool_side,
+            base_axis_x*flange_along + r13*tool_length_times_tool_side,
+            base_axis_y*flange_along + r23*tool_length_times_tool_side,
+            base_axis_z*flange_along + r33*tool_length_times_tool_side,
         )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

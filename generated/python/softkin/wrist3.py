@@ -295,13 +295,13 @@ class Wrist3(OrientationKinematics):
         # numbers of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
-        a = DEGREE*(axis_a - offset_a)
-        cos_a = cos(a)
         b = DEGREE*(axis_b - offset_b)
         sin_b = sin(b)
+        a = DEGREE*(axis_a - offset_a)
+        cos_a = cos(a)
         r13_at_b = -cos_a*sin_b
-        sin_a = sin(a)
         cos_b = cos(b)
+        sin_a = sin(a)
         r11_at_b = cos_a*cos_b
         c = DEGREE*(axis_c - offset_c)
         sin_c = sin(c)
@@ -333,11 +333,11 @@ class Wrist3(OrientationKinematics):
         # numbers of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
+        b = DEGREE*(axis_b - offset_b)
+        cos_b = cos(b)
         a = DEGREE*(axis_a - offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
-        b = DEGREE*(axis_b - offset_b)
-        cos_b = cos(b)
         r11_at_b = cos_a*cos_b
         c = DEGREE*(axis_c - offset_c)
         sin_c = sin(c)

@@ -39,15 +39,15 @@ WRONG = {
     "a rotation on the other side": Fault(_SEARCH, "startR12*turned11", "startR21*turned11"),
     "an offset": Fault(_SEARCH, "l5 := a.a4 - offsetL5", "l5 := a.a4"),
     "too few passes": Fault(_SEARCH, "FOR iteration := 1 TO 20 DO", "FOR iteration := 1 TO 3 DO"),
-    "a tolerance": Fault(_SEARCH, "(fit > 0.5) AND (fitted > 0.5)", "(fit > 0.5) OR (size < 0.05)"),
-    "a pass that changes nothing": Fault(_SEARCH, "x := x + xRate/stretch", "x := x"),
+    "a tolerance": Fault(_SEARCH, "(fit) AND (fitted)", "(fit) OR (size < 0.05)"),
+    "a pass that changes nothing": Fault(_SEARCH, "x := x + oneByStretch*xRate", "x := x"),
     "an output that is never written": Fault(_SEARCH, "r31 := ", "startArm1X := "),
     "the other assembly mode": Fault(_SEARCH, "assemblySign*determinant > 0.0", "assemblySign*determinant < 0.0"),
     "two outputs exchanged": Fault("PUBLIC AxesToCartesian", "x => x, y => y", "x => y, y => x"),
     "another start": Fault("PUBLIC AxesToCartesian", "startX := homeX", "startX := homeX + 1.0E6"),
     "a refusal that is not handed on": Fault("PUBLIC AxesToCartesian", ":= outcome;", ":= SM3_Error.SMC_ERROR.SMC_NO_ERROR;"),
     "a column of the Jacobian": Fault(_JACOBIAN, "coefficients[2, 4] := moment2X", "coefficients[2, 4] := moment3X"),
-    "a Jacobian per platform radius": Fault(_JACOBIAN, "/platformRadius", ""),
+    "a Jacobian per platform radius": Fault(_JACOBIAN, "*oneByPlatformRadius", ""),
     "a margin": Fault("PUBLIC IsSingularity", "ABS(determinant) < 0.001", "ABS(determinant) < 10.0"),
     "a length": Fault(_INVERSE, "span2Y*span2Y", "span2X*span2Y"),
     "a cone": Fault(_INVERSE, "cosBaseLean1 >= leastCosBase", "cosBaseLean1 >= 0.999999"),
@@ -77,7 +77,7 @@ def test_a_wrong_text_is_noticed(name: str) -> None:
 def test_a_memory_is_refused() -> None:
     """A search that keeps where it ended for the next call cannot even be compiled."""
     with pytest.raises(StError, match="only Initialize and AxisSettings may write"):
-        compiled_text(file_of(MECHANISM), text_with(Fault(_SEARCH, "x := x + xRate/stretch;", "homeX := x;")))
+        compiled_text(file_of(MECHANISM), text_with(Fault(_SEARCH, "x := x + oneByStretch*xRate;", "homeX := x;")))
 
 
 def in_reach(program: Program, machine: Machine) -> bool:

@@ -73,29 +73,32 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
+        q5 = DEGREE*(axis_a5 - offset_a5)
+        sin_q5 = sin(q5)
         q1 = DEGREE*(axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
+        q4 = DEGREE*(axis_a4 - offset_a4)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        q4 = DEGREE*(axis_a4 - offset_a4)
-        cos_q234 = cos(q2 + q3 + q4)
+        q2_plus_q3 = q2 + q3
+        q2_plus_q3_plus_q4 = q2_plus_q3 + q4
+        cos_q234 = cos(q2_plus_q3_plus_q4)
         r11_at_q234 = cos_q1*cos_q234
-        q5 = DEGREE*(axis_a5 - offset_a5)
-        sin_q5 = sin(q5)
         cos_q5 = cos(q5)
         r12_at_q5 = cos_q5*sin_q1 - r11_at_q234*sin_q5
-        sin_q234 = sin(q2 + q3 + q4)
+        sin_q234 = sin(q2_plus_q3_plus_q4)
         r12_at_q234 = -cos_q1*sin_q234
         cos_q2 = cos(q2)
         r11_at_q2 = cos_q1*cos_q2
         x_at_q3 = a2*r11_at_q2
-        cos_q23 = cos(q2 + q3)
+        cos_q23 = cos(q2_plus_q3)
         r11_at_q23 = cos_q1*cos_q23
         x_at_q4 = x_at_q3 + a3*r11_at_q23
         x_at_q5 = x_at_q4 + d4*sin_q1
         x_at_q6 = x_at_q5 - d5*r12_at_q234
-        x = x_at_q6 + d6*r12_at_q5
+        d6_times_r12_at_q5 = d6*r12_at_q5
+        x = d6_times_r12_at_q5 + x_at_q6
         r21_at_q234 = cos_q234*sin_q1
         r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5
         r22_at_q234 = -sin_q1*sin_q234
@@ -105,11 +108,12 @@ class ArrayPrograms(Programs):
         y_at_q4 = y_at_q3 + a3*r21_at_q23
         y_at_q5 = y_at_q4 - d4*cos_q1
         y_at_q6 = y_at_q5 - d5*r22_at_q234
-        y = y_at_q6 + d6*r22_at_q5
+        d6_times_r22_at_q5 = -d6*r22_at_q5
+        y = y_at_q6 - d6_times_r22_at_q5
         r32_at_q5 = -sin_q234*sin_q5
         sin_q2 = sin(q2)
         z_at_q3 = d1 + a2*sin_q2
-        sin_q23 = sin(q2 + q3)
+        sin_q23 = sin(q2_plus_q3)
         z_at_q4 = z_at_q3 + a3*sin_q23
         z_at_q6 = z_at_q4 - d5*cos_q234
         z = z_at_q6 + d6*r32_at_q5
@@ -125,8 +129,8 @@ class ArrayPrograms(Programs):
         r31_at_q5 = cos_q5*sin_q234
         r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6
         r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6*r12_at_q5  # the point that the last joints turn about
-        wrist_y = y - d6*r22_at_q5
+        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
+        wrist_y = d6_times_r22_at_q5 + y
         branch_shoulder = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         return (
@@ -153,12 +157,18 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self.constants
         a2 = k.a2
+        a2_minus_a3 = k.a2_minus_a3
+        a2_plus_a3 = k.a2_plus_a3
+        a2_squared_plus_a3_squared = k.a2_squared_plus_a3_squared
         a3 = k.a3
         d1 = k.d1
+        d1_times_d5_times_2 = k.d1_times_d5_times_2
         d4 = k.d4
         d5 = k.d5
         d6 = k.d6
-        machine_scale = k.machine_scale
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding = k.machine_scale_times_rounding
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -171,8 +181,11 @@ class ArrayPrograms(Programs):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
+        part_of_cos_q6 = k.part_of_cos_q6
+        part_of_divisor_q6_q1_for_q3 = k.part_of_divisor_q6_q1_for_q3
+        part_of_highest_q6_q1_for_q3 = k.part_of_highest_q6_q1_for_q3
         rounding_q1 = k.rounding_q1
-        scale_q3 = k.scale_q3
+        scale_q3_squared_times_rounding = k.scale_q3_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -180,6 +193,8 @@ class ArrayPrograms(Programs):
         single_a5 = k.single_a5
         single_a6 = k.single_a6
         size_q1_for_q3 = k.size_q1_for_q3
+        size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
+        twice_d5 = k.twice_d5
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -195,8 +210,9 @@ class ArrayPrograms(Programs):
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
-        require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
+        require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3 = -root(ahead_squared_q1)*sigma_shoulder
 
@@ -206,24 +222,27 @@ class ArrayPrograms(Programs):
             sin_q1_before_q1_for_q3 = sin(free_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
-        divisor_q1 = distance_q1*distance_q1
         # its reference where it is free
-        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/divisor_q1
-        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/divisor_q1
+        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/distance_q1_squared
+        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/distance_q1_squared
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
-            distance_q1 > 1e-11*machine_scale,
+            distance_q1 > machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
             elsewhere_cos_q1_before_q1_for_q3,
             (ref_a1,),
         )
         wrist_z = z - d6*r33
+        wrist_y_from_q1_fixed = wrist_z - d1
 
         def elsewhere_ahead_q1(
             ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, distance_q1: Real, r11: Real, r12: Real,
             r13: Real, r21: Real, r22: Real, r23: Real, r31: Real, r32: Real, r33: Real, ref_a6: Real,
-            sigma_wrist: Whole, sin_q1_before_q1_for_q3: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
+            sigma_wrist: Whole, sin_q1_before_q1_for_q3: Real, wrist_x: Real, wrist_y: Real,
+            wrist_y_from_q1_fixed: Real, wrist_z: Real,
         ) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = -sin(free_a6)
             r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
             r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
             radius_q6_before_q1_for_q3 = sqrt(
@@ -238,21 +257,21 @@ class ArrayPrograms(Programs):
             across_q6_rate_q1_for_q3 = sigma_wrist*r22_from_q1_rate_q1_for_q3
 
             def elsewhere_cos_q6_before_q1_for_q3(
-                free_a6: Real, r21_from_q1_before_q1_for_q3: Real, r21_from_q1_rate_q1_for_q3: Real,
+                cos_of_free_a6: Real, r21_from_q1_before_q1_for_q3: Real, r21_from_q1_rate_q1_for_q3: Real,
                 r22_from_q1_before_q1_for_q3: Real, r22_from_q1_rate_q1_for_q3: Real, radius_q6_before_q1_for_q3: Real,
+                sin_of_free_a6: Real,
             ) -> Reals:
-                cos_q6_before_q1_for_q3 = cos(free_a6)
-                sin_q6_before_q1_for_q3 = sin(free_a6)
+                cos_q6_before_q1_for_q3 = cos_of_free_a6
+                sin_q6_before_q1_for_q3 = -sin_of_free_a6
 
                 def elsewhere_radius_q6_rate_q1_for_q3() -> Reals:
                     radius_q6_rate_q1_for_q3 = 0.0
                     return (radius_q6_rate_q1_for_q3,)
 
                 radius_q6_rate_q1_for_q3 = (
-                    0.5
-                    *(
-                        2.0*r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                        + 2.0*r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                    -(
+                        -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                        - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                     )
                     /radius_q6_before_q1_for_q3
                 )
@@ -270,28 +289,26 @@ class ArrayPrograms(Programs):
                 )
 
             along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
-            cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
+            one_by_length_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
+            part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_length_q6_before_q1_for_q3
+            cos_q6_before_q1_for_q3 = -part_of_cos_q6_before_q1_for_q3
             across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
-            sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
+            part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_length_q6_before_q1_for_q3
+            sin_q6_before_q1_for_q3 = part_of_sin_q6_before_q1_for_q3
             radius_q6_rate_q1_for_q3 = (
-                0.5
-                *(
-                    2.0*r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                    + 2.0*r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                -(
+                    -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                    - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                 )
                 /radius_q6_before_q1_for_q3
             )
             cos_q6_rate_q1_for_q3 = (
-                along_q6_rate_q1_for_q3/radius_q6_before_q1_for_q3
-                - along_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3/(
-                    radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
-                )
+                (along_q6_rate_q1_for_q3 + part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
+                *one_by_length_q6_before_q1_for_q3
             )
             sin_q6_rate_q1_for_q3 = (
-                across_q6_rate_q1_for_q3/radius_q6_before_q1_for_q3
-                - across_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3/(
-                    radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
-                )
+                (across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
+                *one_by_length_q6_before_q1_for_q3
             )
             found = elsewhere(
                 radius_q6_before_q1_for_q3 > 1e-11,
@@ -301,8 +318,8 @@ class ArrayPrograms(Programs):
                 ),
                 elsewhere_cos_q6_before_q1_for_q3,
                 (
-                    free_a6, r21_from_q1_before_q1_for_q3, r21_from_q1_rate_q1_for_q3, r22_from_q1_before_q1_for_q3,
-                    r22_from_q1_rate_q1_for_q3, radius_q6_before_q1_for_q3,
+                    cos_of_free_a6, r21_from_q1_before_q1_for_q3, r21_from_q1_rate_q1_for_q3,
+                    r22_from_q1_before_q1_for_q3, r22_from_q1_rate_q1_for_q3, radius_q6_before_q1_for_q3, sin_of_free_a6,
                 ),
             )
             (
@@ -315,11 +332,11 @@ class ArrayPrograms(Programs):
             )
             wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q1_for_q3
             r22_from_q1_before_q6_before_q1_for_q3 = r32*cos_q6_before_q1_for_q3 + r31*sin_q6_before_q1_for_q3
-            wrist_y_from_q1_before_q1_for_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3 - d1
+            wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3 = (
                 wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
-                + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - a2*a2 - a3*a3
+                + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - a2_squared_plus_a3_squared
             )
 
             def elsewhere_ahead_q1(
@@ -344,8 +361,11 @@ class ArrayPrograms(Programs):
                 wrist_y_from_q1_rate_q1_for_q3 = d5*r22_from_q1_before_q6_rate_q1_for_q3
                 # how it changes with q1
                 rate_q1_for_q3 = (
-                    2.0*wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
-                    + 2.0*wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
+                    2.0
+                    *(
+                        wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
+                        + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
+                    )
                 )
 
                 def elsewhere_turn_q1_for_q3() -> Reals:
@@ -357,46 +377,46 @@ class ArrayPrograms(Programs):
                 )
                 turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
                 (turn_q1_for_q3,) = elsewhere(
-                    absolute(rate_q1_for_q3) > 1e-12*size_q1_for_q3,
+                    absolute(rate_q1_for_q3) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3,),
                     elsewhere_turn_q1_for_q3,
                     (),
                 )
+                turn_q1_for_q3_squared = turn_q1_for_q3*turn_q1_for_q3
                 # whether it follows q6
                 follows_q1_for_q3 = (
-                    (turn_q1_for_q3*turn_q1_for_q3 > 1e-12)
+                    (turn_q1_for_q3_squared > 1e-12)
                     | (
                         (across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3 + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3)
-                        *turn_q1_for_q3*turn_q1_for_q3 > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                        *turn_q1_for_q3_squared > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
                     )
                 )
 
                 def elsewhere_best_cost_q1_for_q3(
                     ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real,
-                    turn_q1_for_q3: Real, wrist_x: Real, wrist_y: Real,
+                    turn_q1_for_q3: Real, turn_q1_for_q3_squared: Real, wrist_x: Real, wrist_y: Real,
                 ) -> Reals:
-                    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3_squared)
+                    one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
                     turned_cos_q1_for_q3 = (
-                        (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                        one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
                     )
                     turned_sin_q1_for_q3 = (
-                        (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                        one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
                     )
                     # what is left of its own equation
                     turned_cost_q1_for_q3 = absolute(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
                     best_cost_q1_for_q3 = turned_cost_q1_for_q3
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)/turned_length_q1_for_q3
+                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
                     best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
                     best_cos_q1_for_q3 = turned_cos_q1_for_q3
                     best_sin_q1_for_q3 = turned_sin_q1_for_q3
                     return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
 
-                along_q6_q1_for_q3 = (
-                    2.0*d5*r32*wrist_z - 2.0*d1*d5*r32 - 2.0*ahead_q1_before_q1_for_q3*d5*r31*cos_q5_before_q1_for_q3
-                )
-                across_q6_q1_for_q3 = (
-                    2.0*d5*r31*wrist_z + 2.0*ahead_q1_before_q1_for_q3*d5*r32*cos_q5_before_q1_for_q3 - 2.0*d1*d5*r31
-                )
+                part_of_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5*wrist_z
+                part_of_across_q6_q1_for_q3_2 = ahead_q1_before_q1_for_q3*twice_d5*cos_q5_before_q1_for_q3
+                along_q6_q1_for_q3 = -part_of_across_q6_q1_for_q3*r32 - part_of_across_q6_q1_for_q3_2*r31
+                across_q6_q1_for_q3 = part_of_across_q6_q1_for_q3_2*r32 - part_of_across_q6_q1_for_q3*r31
                 swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3 + along_q6_q1_for_q3*along_q6_q1_for_q3)
 
                 def elsewhere_highest_q6_q1_for_q3() -> Reals:
@@ -407,27 +427,21 @@ class ArrayPrograms(Programs):
                 level_q6_q1_for_q3 = (
                     value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3 - along_q6_q1_for_q3*cos_q6_before_q1_for_q3
                 )
+                part_of_highest_q6_q1_for_q3_2 = (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3
                 # the arc: cosines from its centre
                 highest_q6_q1_for_q3 = select(
-                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 > 1.0,
+                    part_of_highest_q6_q1_for_q3_2 > 1.0,
                     1.0,
-                    select(
-                        (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 < -1.0,
-                        -1.0,
-                        (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3,
-                    ),
+                    select(part_of_highest_q6_q1_for_q3_2 < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2),
                 )
+                part_of_lowest_q6_q1_for_q3 = (level_q6_q1_for_q3 + part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3
                 lowest_q6_q1_for_q3 = select(
-                    (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 > 1.0,
+                    -part_of_lowest_q6_q1_for_q3 > 1.0,
                     1.0,
-                    select(
-                        (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 < -1.0,
-                        -1.0,
-                        (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3,
-                    ),
+                    select(-part_of_lowest_q6_q1_for_q3 < -1.0, -1.0, -part_of_lowest_q6_q1_for_q3),
                 )
                 highest_q6_q1_for_q3, lowest_q6_q1_for_q3 = elsewhere(
-                    swing_q6_q1_for_q3 > 9.999999000000001e-13*size_q1_for_q3,
+                    swing_q6_q1_for_q3 > part_of_divisor_q6_q1_for_q3,
                     (highest_q6_q1_for_q3, lowest_q6_q1_for_q3),
                     elsewhere_highest_q6_q1_for_q3,
                     (),
@@ -444,13 +458,14 @@ class ArrayPrograms(Programs):
                     -1.0,
                 )
                 moved_q6_q1_for_q3 = nearest_on_arc(
-                    angle_q6_q1_for_q3, centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
-                    0.5*far_q6_q1_for_q3 - 0.5*near_q6_q1_for_q3,
+                    angle_q6_q1_for_q3,
+                    centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
+                    0.5*(far_q6_q1_for_q3 - near_q6_q1_for_q3),
                 )
                 near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
                 near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
-                near_q_q1_for_q3 = sigma_wrist*near_cos_q6_q1_for_q3*r12 + sigma_wrist*near_sin_q6_q1_for_q3*r11
-                near_p_q1_for_q3 = -sigma_wrist*near_cos_q6_q1_for_q3*r22 - sigma_wrist*near_sin_q6_q1_for_q3*r21
+                near_q_q1_for_q3 = sigma_wrist*(near_cos_q6_q1_for_q3*r12 + near_sin_q6_q1_for_q3*r11)
+                near_p_q1_for_q3 = (-near_cos_q6_q1_for_q3*r22 - near_sin_q6_q1_for_q3*r21)*sigma_wrist
                 near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
 
                 def elsewhere_near_cos_q1_for_q3(cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real) -> Reals:
@@ -459,8 +474,8 @@ class ArrayPrograms(Programs):
                     return (near_cos_q1_for_q3, near_sin_q1_for_q3)
 
                 near_along_q1_for_q3 = (
-                    (sigma_wrist*near_cos_q6_q1_for_q3*r11 - sigma_wrist*near_sin_q6_q1_for_q3*r12)*near_p_q1_for_q3
-                    - (sigma_wrist*near_sin_q6_q1_for_q3*r22 - sigma_wrist*near_cos_q6_q1_for_q3*r21)*near_q_q1_for_q3
+                    sigma_wrist*(near_cos_q6_q1_for_q3*r21 - near_sin_q6_q1_for_q3*r22)*near_q_q1_for_q3
+                    - (near_sin_q6_q1_for_q3*r12 - near_cos_q6_q1_for_q3*r11)*sigma_wrist*near_p_q1_for_q3
                 )
                 # of two opposite ways
                 near_towards_q1_for_q3 = select(
@@ -468,9 +483,9 @@ class ArrayPrograms(Programs):
                     near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3, near_along_q1_for_q3,
                 )
                 near_side_q1_for_q3 = select(near_towards_q1_for_q3 < 0.0, -1.0, 1.0)
-                near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3  # the earlier angle follows
-                # it stays where every angle gives this one
-                near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
+                part_of_near_cos_q1_for_q3 = near_side_q1_for_q3/near_radius_q1_for_q3
+                near_cos_q1_for_q3 = -near_q_q1_for_q3*part_of_near_cos_q1_for_q3  # the earlier angle follows
+                near_sin_q1_for_q3 = near_p_q1_for_q3*part_of_near_cos_q1_for_q3  # it stays where every angle gives this one
                 near_cos_q1_for_q3, near_sin_q1_for_q3 = elsewhere(
                     near_radius_q1_for_q3 > 1e-12,
                     (near_cos_q1_for_q3, near_sin_q1_for_q3),
@@ -488,8 +503,8 @@ class ArrayPrograms(Programs):
                 mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
                 mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
                 mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
-                mirrored_q_q1_for_q3 = sigma_wrist*mirrored_cos_q6_q1_for_q3*r12 + sigma_wrist*mirrored_sin_q6_q1_for_q3*r11
-                mirrored_p_q1_for_q3 = -sigma_wrist*mirrored_cos_q6_q1_for_q3*r22 - sigma_wrist*mirrored_sin_q6_q1_for_q3*r21
+                mirrored_q_q1_for_q3 = sigma_wrist*(mirrored_cos_q6_q1_for_q3*r12 + mirrored_sin_q6_q1_for_q3*r11)
+                mirrored_p_q1_for_q3 = (-mirrored_cos_q6_q1_for_q3*r22 - mirrored_sin_q6_q1_for_q3*r21)*sigma_wrist
                 mirrored_radius_q1_for_q3 = sqrt(
                     mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
                 )
@@ -500,12 +515,8 @@ class ArrayPrograms(Programs):
                     return (mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3)
 
                 mirrored_along_q1_for_q3 = (
-                    (
-                        sigma_wrist*mirrored_cos_q6_q1_for_q3*r11 - sigma_wrist*mirrored_sin_q6_q1_for_q3*r12
-                    )*mirrored_p_q1_for_q3
-                    - (
-                        sigma_wrist*mirrored_sin_q6_q1_for_q3*r22 - sigma_wrist*mirrored_cos_q6_q1_for_q3*r21
-                    )*mirrored_q_q1_for_q3
+                    sigma_wrist*(mirrored_cos_q6_q1_for_q3*r21 - mirrored_sin_q6_q1_for_q3*r22)*mirrored_q_q1_for_q3
+                    - (mirrored_sin_q6_q1_for_q3*r12 - mirrored_cos_q6_q1_for_q3*r11)*sigma_wrist*mirrored_p_q1_for_q3
                 )
                 # of two opposite ways
                 mirrored_towards_q1_for_q3 = select(
@@ -514,10 +525,10 @@ class ArrayPrograms(Programs):
                     mirrored_along_q1_for_q3,
                 )
                 mirrored_side_q1_for_q3 = select(mirrored_towards_q1_for_q3 < 0.0, -1.0, 1.0)
-                # the earlier angle follows
-                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                part_of_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*part_of_mirrored_cos_q1_for_q3  # the earlier angle follows
                 # it stays where every angle gives this one
-                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*part_of_mirrored_cos_q1_for_q3
                 mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3 = elsewhere(
                     mirrored_radius_q1_for_q3 > 1e-12,
                     (mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3),
@@ -544,7 +555,7 @@ class ArrayPrograms(Programs):
                     (mirrored_cos_q1_for_q3, mirrored_cost_q1_for_q3, mirrored_sin_q1_for_q3),
                 )
                 swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3 = elsewhere(
-                    distance_q1 > 1e-11*machine_scale,
+                    distance_q1 > machine_scale_times_free_angle,
                     (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3),
                     elsewhere_swept_cost_q1_for_q3_2,
                     (near_cos_q1_for_q3, near_sin_q1_for_q3),
@@ -559,8 +570,8 @@ class ArrayPrograms(Programs):
                     (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
                     elsewhere_best_cost_q1_for_q3,
                     (
-                        ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, turn_q1_for_q3, wrist_x,
-                        wrist_y,
+                        ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, turn_q1_for_q3,
+                        turn_q1_for_q3_squared, wrist_x, wrist_y,
                     ),
                 )
 
@@ -576,7 +587,7 @@ class ArrayPrograms(Programs):
                 cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
                 sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
                 ahead_q1, cos_q1, sin_q1 = elsewhere(
-                    best_cost_q1_for_q3 > 1e-12*machine_scale,
+                    best_cost_q1_for_q3 > machine_scale_times_rounding,
                     (ahead_q1, cos_q1, sin_q1),
                     elsewhere_ahead_q1,
                     (best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
@@ -605,12 +616,13 @@ class ArrayPrograms(Programs):
         cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
         sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
         ahead_q1, cos_q1, sin_q1 = elsewhere(
-            ahead_squared_q1 > 1e-6*machine_scale*machine_scale,
+            ahead_squared_q1 > machine_scale_squared_times_plane,
             (ahead_q1, cos_q1, sin_q1),
             elsewhere_ahead_q1,
             (
                 ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, distance_q1, r11, r12, r13, r21, r22, r23, r31,
-                r32, r33, ref_a6, sigma_wrist, sin_q1_before_q1_for_q3, wrist_x, wrist_y, wrist_z,
+                r32, r33, ref_a6, sigma_wrist, sin_q1_before_q1_for_q3, wrist_x, wrist_y, wrist_y_from_q1_fixed,
+                wrist_z,
             ),
         )
         cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
@@ -618,11 +630,14 @@ class ArrayPrograms(Programs):
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         q6_radius_of_q5 = sigma_wrist*radius_q6
+        q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33
 
         def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3 = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3 = sin(free_a6)
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = -sin(free_a6)
+            cos_q6_before_q6_of_q3 = cos_of_free_a6  # its reference where it is free
+            sin_q6_before_q6_of_q3 = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3)
 
         along_q6 = -sigma_wrist*r21_from_q1  # q6: polar angle in the r31 and r32 equations
@@ -636,36 +651,40 @@ class ArrayPrograms(Programs):
             (ref_a6,),
         )
         r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
-        r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5*r33
+        r21_from_q1_before_q56_before_q6_of_q3 = (
+            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5_times_r33
+        )
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
         r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
-        wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2*a2 - a3*a3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
         )
+        size_of_value_q6_of_q3 = absolute(value_q6_of_q3)
 
         def elsewhere_cos_q6(
-            ahead_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5: Real, r31: Real, r32: Real,
-            r33: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real, wrist_z: Real,
+            ahead_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5_times_r33: Real, r31: Real,
+            r32: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, size_of_value_q6_of_q3: Real,
+            value_q6_of_q3: Real, wrist_y_from_q1_fixed: Real,
         ) -> Reals:
 
             def elsewhere_cos_q6(
-                ahead_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5: Real, r31: Real, r32: Real,
-                r33: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real, wrist_z: Real,
+                ahead_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5_times_r33: Real, r31: Real,
+                r32: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real,
+                wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed = ahead_q1 + d5*q6_radius_of_q5*r33
-                wrist_x_from_q1_along = -d5*r31*cos_q5
-                wrist_y_from_q1_fixed = wrist_z - d1
+                wrist_x_from_q1_fixed = ahead_q1 + d5*q6_radius_of_q5_times_r33
+                wrist_y_from_q1_across = d5*r31
+                wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
                 wrist_y_from_q1_along = d5*r32
                 along_q6_of_q3 = (
-                    2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+                    -2.0*(-wrist_x_from_q1_along*wrist_x_from_q1_fixed - wrist_y_from_q1_along*wrist_y_from_q1_fixed)
                 )
-                wrist_x_from_q1_across = d5*r32*cos_q5
-                wrist_y_from_q1_across = d5*r31
+                wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
                 across_q6_of_q3 = (
-                    2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                    2.0*(wrist_x_from_q1_across*wrist_x_from_q1_fixed + wrist_y_from_q1_across*wrist_y_from_q1_fixed)
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
 
@@ -677,26 +696,21 @@ class ArrayPrograms(Programs):
                 level_q6_of_q3 = (
                     value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
                 )
+                part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                 # the arc: cosines from its centre
                 highest_q6_of_q3 = select(
-                    (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0,
+                    part_of_highest_q6_of_q3 > 1.0,
                     1.0,
-                    select(
-                        (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0, -1.0,
-                        (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3,
-                    ),
+                    select(part_of_highest_q6_of_q3 < -1.0, -1.0, part_of_highest_q6_of_q3),
                 )
+                part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                 lowest_q6_of_q3 = select(
-                    (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0,
+                    -part_of_lowest_q6_of_q3 > 1.0,
                     1.0,
-                    select(
-                        (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3,
-                    ),
+                    select(-part_of_lowest_q6_of_q3 < -1.0, -1.0, -part_of_lowest_q6_of_q3),
                 )
                 highest_q6_of_q3, lowest_q6_of_q3 = elsewhere(
-                    swing_q6_of_q3 > 1e-12*size_q1_for_q3,
+                    swing_q6_of_q3 > size_q1_for_q3_times_rounding,
                     (highest_q6_of_q3, lowest_q6_of_q3),
                     elsewhere_highest_q6_of_q3,
                     (),
@@ -709,17 +723,17 @@ class ArrayPrograms(Programs):
                     along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0, 1.0, -1.0,
                 )
                 moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
-                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+                    angle_q6_of_q3,
+                    centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*(far_q6_of_q3 - near_q6_of_q3),
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
+                part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
-                    sqrt(
-                        (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
-                        + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
-                    )
+                    sqrt(part_of_cost_q6_of_q3*part_of_cost_q6_of_q3 + part_of_cost_q6_of_q3_2*part_of_cost_q6_of_q3_2)
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11)
@@ -742,12 +756,12 @@ class ArrayPrograms(Programs):
             cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
             sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
             cos_q6, sin_q6 = elsewhere(
-                (radius_q6 > 0.1) & (absolute(value_q6_of_q3) > 1.000000001*size_q1_for_q3),
+                (radius_q6 > 0.1) & (size_of_value_q6_of_q3 > part_of_cos_q6),
                 (cos_q6, sin_q6),
                 elsewhere_cos_q6,
                 (
-                    ahead_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5, r31, r32, r33, radius_q6,
-                    sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_z,
+                    ahead_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5_times_r33, r31, r32, radius_q6,
+                    sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6, sin_q6)
@@ -755,25 +769,25 @@ class ArrayPrograms(Programs):
         cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
         sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
         cos_q6, sin_q6 = elsewhere(
-            absolute(value_q6_of_q3) <= size_q1_for_q3,
+            size_of_value_q6_of_q3 <= size_q1_for_q3,
             (cos_q6, sin_q6),
             elsewhere_cos_q6,
             (
-                ahead_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5, r31, r32, r33, radius_q6,
-                sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_z,
+                ahead_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5_times_r33, r31, r32, radius_q6,
+                sin_q6_before_q6_of_q3, size_of_value_q6_of_q3, value_q6_of_q3, wrist_y_from_q1_fixed,
             ),
         )
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
+        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5_times_r33
         wrist_x_from_q1 = ahead_q1 - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2 + a3 + reach)*(a2 + a3 - reach)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (a3 + reach - a2)*(a2 + reach - a3)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        require(status, sine_square_q3 >= -1e-12*scale_q3*scale_q3, Status.UNREACHABLE)
+        require(status, sine_square_q3 >= -scale_q3_squared_times_rounding, Status.UNREACHABLE)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
@@ -795,7 +809,7 @@ class ArrayPrograms(Programs):
         direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
         direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         direction_x_q2, direction_y_q2 = elsewhere(
-            reach > 1e-11*machine_scale,
+            reach > machine_scale_times_free_angle,
             (direction_x_q2, direction_y_q2),
             elsewhere_direction_x_q2,
             (ref_a2,),
@@ -862,12 +876,18 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self.constants
         a2 = k.a2
+        a2_minus_a3 = k.a2_minus_a3
+        a2_plus_a3 = k.a2_plus_a3
+        a2_squared_plus_a3_squared = k.a2_squared_plus_a3_squared
         a3 = k.a3
         d1 = k.d1
+        d1_times_d5_times_2 = k.d1_times_d5_times_2
         d4 = k.d4
         d5 = k.d5
         d6 = k.d6
-        machine_scale = k.machine_scale
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding = k.machine_scale_times_rounding
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -880,8 +900,11 @@ class ArrayPrograms(Programs):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
+        part_of_cos_q6 = k.part_of_cos_q6
+        part_of_divisor_q6_q1_for_q3 = k.part_of_divisor_q6_q1_for_q3
+        part_of_highest_q6_q1_for_q3 = k.part_of_highest_q6_q1_for_q3
         rounding_q1 = k.rounding_q1
-        scale_q3 = k.scale_q3
+        scale_q3_squared_times_rounding = k.scale_q3_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -889,6 +912,8 @@ class ArrayPrograms(Programs):
         single_a5 = k.single_a5
         single_a6 = k.single_a6
         size_q1_for_q3 = k.size_q1_for_q3
+        size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
+        twice_d5 = k.twice_d5
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -904,8 +929,9 @@ class ArrayPrograms(Programs):
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
-        require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
+        require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3_right = root(ahead_squared_q1)
 
@@ -920,15 +946,14 @@ class ArrayPrograms(Programs):
                 sin_q1_before_q1_for_q3_right,
             )
 
-        divisor_q1 = distance_q1*distance_q1
         # its reference where it is free
-        cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/divisor_q1
-        sin_q1_before_q1_for_q3_left = (d4*wrist_x - ahead_q1_before_q1_for_q3_right*wrist_y)/divisor_q1
+        cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/distance_q1_squared
+        sin_q1_before_q1_for_q3_left = (d4*wrist_x - ahead_q1_before_q1_for_q3_right*wrist_y)/distance_q1_squared
         # its reference where it is free
-        cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/divisor_q1
-        sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_y + d4*wrist_x)/divisor_q1
+        cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/distance_q1_squared
+        sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_y + d4*wrist_x)/distance_q1_squared
         found = elsewhere(
-            distance_q1 > 1e-11*machine_scale,
+            distance_q1 > machine_scale_times_free_angle,
             (
                 cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
                 sin_q1_before_q1_for_q3_right,
@@ -941,14 +966,18 @@ class ArrayPrograms(Programs):
             sin_q1_before_q1_for_q3_right,
         ) = found
         wrist_z = z - d6*r33
+        wrist_y_from_q1_fixed = wrist_z - d1
 
         def elsewhere_ahead_q1_left_down(
             ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
             cos_q1_before_q1_for_q3_right: Real, distance_q1: Real, r11: Real, r12: Real, r13: Real, r21: Real,
             r22: Real, r23: Real, r31: Real, r32: Real, r33: Real, ref_a6: Real, sin_q1_before_q1_for_q3_left: Real,
-            sin_q1_before_q1_for_q3_right: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
+            sin_q1_before_q1_for_q3_right: Real, wrist_x: Real, wrist_y: Real, wrist_y_from_q1_fixed: Real,
+            wrist_z: Real,
         ) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = -sin(free_a6)
             r21_from_q1_before_q1_for_q3_left = r21*cos_q1_before_q1_for_q3_left - r11*sin_q1_before_q1_for_q3_left
             r22_from_q1_before_q1_for_q3_left = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
             radius_q6_before_q1_for_q3_left = sqrt(
@@ -960,22 +989,21 @@ class ArrayPrograms(Programs):
             r22_from_q1_rate_q1_for_q3_left = -r12*cos_q1_before_q1_for_q3_left - r22*sin_q1_before_q1_for_q3_left
 
             def elsewhere_cos_q6_before_q1_for_q3_left_down(
-                free_a6: Real, r21_from_q1_before_q1_for_q3_left: Real, r21_from_q1_rate_q1_for_q3_left: Real,
+                cos_of_free_a6: Real, r21_from_q1_before_q1_for_q3_left: Real, r21_from_q1_rate_q1_for_q3_left: Real,
                 r22_from_q1_before_q1_for_q3_left: Real, r22_from_q1_rate_q1_for_q3_left: Real,
-                radius_q6_before_q1_for_q3_left: Real,
+                radius_q6_before_q1_for_q3_left: Real, sin_of_free_a6: Real,
             ) -> Reals:
-                cos_q6_before_q1_for_q3_left_down = cos(free_a6)
-                sin_q6_before_q1_for_q3_left_down = sin(free_a6)
+                cos_q6_before_q1_for_q3_left_down = cos_of_free_a6
+                sin_q6_before_q1_for_q3_left_down = -sin_of_free_a6
 
                 def elsewhere_radius_q6_rate_q1_for_q3_left() -> Reals:
                     radius_q6_rate_q1_for_q3_left = 0.0
                     return (radius_q6_rate_q1_for_q3_left,)
 
                 radius_q6_rate_q1_for_q3_left = (
-                    0.5
-                    *(
-                        2.0*r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
-                        + 2.0*r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                    -(
+                        -r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
+                        - r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
                     )
                     /radius_q6_before_q1_for_q3_left
                 )
@@ -987,7 +1015,7 @@ class ArrayPrograms(Programs):
                 )
                 cos_q6_rate_q1_for_q3_left_down = 0.0
                 sin_q6_rate_q1_for_q3_left_down = 0.0
-                cos_q6_before_q1_for_q3_left_up = cos_q6_before_q1_for_q3_left_down
+                cos_q6_before_q1_for_q3_left_up = cos_of_free_a6
                 sin_q6_before_q1_for_q3_left_up = sin_q6_before_q1_for_q3_left_down
                 cos_q6_rate_q1_for_q3_left_up = 0.0
                 sin_q6_rate_q1_for_q3_left_up = 0.0
@@ -997,32 +1025,52 @@ class ArrayPrograms(Programs):
                     sin_q6_before_q1_for_q3_left_up, cos_q6_rate_q1_for_q3_left_up, sin_q6_rate_q1_for_q3_left_up,
                 )
 
-            cos_q6_before_q1_for_q3_left_down = -r21_from_q1_before_q1_for_q3_left/radius_q6_before_q1_for_q3_left
-            sin_q6_before_q1_for_q3_left_down = r22_from_q1_before_q1_for_q3_left/radius_q6_before_q1_for_q3_left
+            one_by_length_q6_before_q1_for_q3_left = 1.0/radius_q6_before_q1_for_q3_left
+            part_of_cos_q6_before_q1_for_q3_left_down = (
+                one_by_length_q6_before_q1_for_q3_left*r21_from_q1_before_q1_for_q3_left
+            )
+            cos_q6_before_q1_for_q3_left_down = -part_of_cos_q6_before_q1_for_q3_left_down
+            part_of_sin_q6_before_q1_for_q3_left_down = (
+                one_by_length_q6_before_q1_for_q3_left*r22_from_q1_before_q1_for_q3_left
+            )
+            sin_q6_before_q1_for_q3_left_down = part_of_sin_q6_before_q1_for_q3_left_down
             radius_q6_rate_q1_for_q3_left = (
-                0.5
-                *(
-                    2.0*r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
-                    + 2.0*r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                -(
+                    -r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
+                    - r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
                 )
                 /radius_q6_before_q1_for_q3_left
             )
             cos_q6_rate_q1_for_q3_left_down = (
-                r21_from_q1_before_q1_for_q3_left*radius_q6_rate_q1_for_q3_left/(
-                    radius_q6_before_q1_for_q3_left*radius_q6_before_q1_for_q3_left
+                one_by_length_q6_before_q1_for_q3_left
+                *(
+                    part_of_cos_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
+                    - r21_from_q1_rate_q1_for_q3_left
                 )
-                - r21_from_q1_rate_q1_for_q3_left/radius_q6_before_q1_for_q3_left
             )
             sin_q6_rate_q1_for_q3_left_down = (
-                r22_from_q1_rate_q1_for_q3_left/radius_q6_before_q1_for_q3_left
-                - r22_from_q1_before_q1_for_q3_left*radius_q6_rate_q1_for_q3_left/(
-                    radius_q6_before_q1_for_q3_left*radius_q6_before_q1_for_q3_left
+                (
+                    r22_from_q1_rate_q1_for_q3_left
+                    - part_of_sin_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
                 )
+                *one_by_length_q6_before_q1_for_q3_left
             )
             cos_q6_before_q1_for_q3_left_up = -cos_q6_before_q1_for_q3_left_down
-            sin_q6_before_q1_for_q3_left_up = -sin_q6_before_q1_for_q3_left_down
-            cos_q6_rate_q1_for_q3_left_up = -cos_q6_rate_q1_for_q3_left_down
-            sin_q6_rate_q1_for_q3_left_up = -sin_q6_rate_q1_for_q3_left_down
+            sin_q6_before_q1_for_q3_left_up = -part_of_sin_q6_before_q1_for_q3_left_down
+            cos_q6_rate_q1_for_q3_left_up = (
+                (
+                    r21_from_q1_rate_q1_for_q3_left
+                    - part_of_cos_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
+                )
+                *one_by_length_q6_before_q1_for_q3_left
+            )
+            sin_q6_rate_q1_for_q3_left_up = (
+                one_by_length_q6_before_q1_for_q3_left
+                *(
+                    part_of_sin_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
+                    - r22_from_q1_rate_q1_for_q3_left
+                )
+            )
             found = elsewhere(
                 radius_q6_before_q1_for_q3_left > 1e-11,
                 (
@@ -1032,8 +1080,9 @@ class ArrayPrograms(Programs):
                 ),
                 elsewhere_cos_q6_before_q1_for_q3_left_down,
                 (
-                    free_a6, r21_from_q1_before_q1_for_q3_left, r21_from_q1_rate_q1_for_q3_left,
+                    cos_of_free_a6, r21_from_q1_before_q1_for_q3_left, r21_from_q1_rate_q1_for_q3_left,
                     r22_from_q1_before_q1_for_q3_left, r22_from_q1_rate_q1_for_q3_left, radius_q6_before_q1_for_q3_left,
+                    sin_of_free_a6,
                 ),
             )
             (
@@ -1055,12 +1104,13 @@ class ArrayPrograms(Programs):
                 r32*cos_q6_before_q1_for_q3_left_down + r31*sin_q6_before_q1_for_q3_left_down
             )
             wrist_y_from_q1_before_q1_for_q3_left_down = (
-                wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3_left_down - d1
+                wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_left_down
             )
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3_left_down = (
                 wrist_x_from_q1_before_q1_for_q3_left_down*wrist_x_from_q1_before_q1_for_q3_left_down
-                + wrist_y_from_q1_before_q1_for_q3_left_down*wrist_y_from_q1_before_q1_for_q3_left_down - a2*a2 - a3*a3
+                + wrist_y_from_q1_before_q1_for_q3_left_down*wrist_y_from_q1_before_q1_for_q3_left_down
+                - a2_squared_plus_a3_squared
             )
             r23_from_q1_rate_q1_for_q3_left = -r13*cos_q1_before_q1_for_q3_left - r23*sin_q1_before_q1_for_q3_left
             r21_from_q1_before_q6_rate_q1_for_q3_left_down = (
@@ -1093,19 +1143,21 @@ class ArrayPrograms(Programs):
             # to the boundary of the later step
             turn_q1_for_q3_left_down = -excess_q1_for_q3_left_down/rate_q1_for_q3_left_down
             (turn_q1_for_q3_left_down,) = elsewhere(
-                absolute(rate_q1_for_q3_left_down) > 1e-12*size_q1_for_q3,
+                absolute(rate_q1_for_q3_left_down) > size_q1_for_q3_times_rounding,
                 (turn_q1_for_q3_left_down,),
                 elsewhere_turn_q1_for_q3_left_down,
                 (),
             )
-            turned_length_q1_for_q3_left_down = root(1.0 + turn_q1_for_q3_left_down*turn_q1_for_q3_left_down)
+            turn_q1_for_q3_squared_left_down = turn_q1_for_q3_left_down*turn_q1_for_q3_left_down
+            turned_length_q1_for_q3_left_down = root(1.0 + turn_q1_for_q3_squared_left_down)
+            one_by_turned_length_q1_for_q3_left_down = 1.0/turned_length_q1_for_q3_left_down
             turned_cos_q1_for_q3_left_down = (
-                (cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left)
-                /turned_length_q1_for_q3_left_down
+                one_by_turned_length_q1_for_q3_left_down
+                *(cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left)
             )
             turned_sin_q1_for_q3_left_down = (
-                (sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left)
-                /turned_length_q1_for_q3_left_down
+                one_by_turned_length_q1_for_q3_left_down
+                *(sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left)
             )
             # what is left of its own equation
             turned_cost_q1_for_q3_left_down = absolute(
@@ -1113,24 +1165,20 @@ class ArrayPrograms(Programs):
             )
             # whether it follows q6
             follows_q1_for_q3_left_down = (
-                (turn_q1_for_q3_left_down*turn_q1_for_q3_left_down > 1e-12)
+                (turn_q1_for_q3_squared_left_down > 1e-12)
                 | (
                     (
                         r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
                         + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
                     )
-                    *turn_q1_for_q3_left_down*turn_q1_for_q3_left_down > 1e-12*radius_q6_before_q1_for_q3_left
+                    *turn_q1_for_q3_squared_left_down > 1e-12*radius_q6_before_q1_for_q3_left
                     *radius_q6_before_q1_for_q3_left
                 )
             )
-            along_q6_q1_for_q3_left = (
-                2.0*d5*r32*wrist_z + 2.0*ahead_q1_before_q1_for_q3_right*d5*r31*cos_q5_before_q1_for_q3_left
-                - 2.0*d1*d5*r32
-            )
-            across_q6_q1_for_q3_left = (
-                2.0*d5*r31*wrist_z - 2.0*d1*d5*r31
-                - 2.0*ahead_q1_before_q1_for_q3_right*d5*r32*cos_q5_before_q1_for_q3_left
-            )
+            part_of_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5*wrist_z
+            part_of_across_q6_q1_for_q3_2_left = -ahead_q1_before_q1_for_q3_right*twice_d5*cos_q5_before_q1_for_q3_left
+            along_q6_q1_for_q3_left = -part_of_across_q6_q1_for_q3*r32 - part_of_across_q6_q1_for_q3_2_left*r31
+            across_q6_q1_for_q3_left = part_of_across_q6_q1_for_q3_2_left*r32 - part_of_across_q6_q1_for_q3*r31
             swing_q6_q1_for_q3_left = sqrt(
                 across_q6_q1_for_q3_left*across_q6_q1_for_q3_left + along_q6_q1_for_q3_left*along_q6_q1_for_q3_left
             )
@@ -1147,11 +1195,14 @@ class ArrayPrograms(Programs):
             r22_from_q1_before_q6_before_q1_for_q3_left_up = (
                 r32*cos_q6_before_q1_for_q3_left_up + r31*sin_q6_before_q1_for_q3_left_up
             )
-            wrist_y_from_q1_before_q1_for_q3_left_up = wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3_left_up - d1
+            wrist_y_from_q1_before_q1_for_q3_left_up = (
+                wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_left_up
+            )
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3_left_up = (
                 wrist_x_from_q1_before_q1_for_q3_left_up*wrist_x_from_q1_before_q1_for_q3_left_up
-                + wrist_y_from_q1_before_q1_for_q3_left_up*wrist_y_from_q1_before_q1_for_q3_left_up - a2*a2 - a3*a3
+                + wrist_y_from_q1_before_q1_for_q3_left_up*wrist_y_from_q1_before_q1_for_q3_left_up
+                - a2_squared_plus_a3_squared
             )
 
             def elsewhere_highest_q6_q1_for_q3_left_down() -> Reals:
@@ -1168,50 +1219,46 @@ class ArrayPrograms(Programs):
                 value_q1_for_q3_left_down - across_q6_q1_for_q3_left*sin_q6_before_q1_for_q3_left_down
                 - along_q6_q1_for_q3_left*cos_q6_before_q1_for_q3_left_down
             )
+            part_of_highest_q6_q1_for_q3_2_left_down = (
+                (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_left_down)/swing_q6_q1_for_q3_left
+            )
             # the arc: cosines from its centre
             highest_q6_q1_for_q3_left_down = select(
-                (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_down)/swing_q6_q1_for_q3_left > 1.0,
+                part_of_highest_q6_q1_for_q3_2_left_down > 1.0,
                 1.0,
-                select(
-                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_down)/swing_q6_q1_for_q3_left < -1.0,
-                    -1.0,
-                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_down)/swing_q6_q1_for_q3_left,
-                ),
+                select(part_of_highest_q6_q1_for_q3_2_left_down < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2_left_down),
+            )
+            part_of_lowest_q6_q1_for_q3_left_down = (
+                (level_q6_q1_for_q3_left_down + part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3_left
             )
             lowest_q6_q1_for_q3_left_down = select(
-                (-level_q6_q1_for_q3_left_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left > 1.0,
+                -part_of_lowest_q6_q1_for_q3_left_down > 1.0,
                 1.0,
-                select(
-                    (-level_q6_q1_for_q3_left_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left < -1.0,
-                    -1.0,
-                    (-level_q6_q1_for_q3_left_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left,
-                ),
+                select(-part_of_lowest_q6_q1_for_q3_left_down < -1.0, -1.0, -part_of_lowest_q6_q1_for_q3_left_down),
             )
             level_q6_q1_for_q3_left_up = (
                 value_q1_for_q3_left_up - across_q6_q1_for_q3_left*sin_q6_before_q1_for_q3_left_up
                 - along_q6_q1_for_q3_left*cos_q6_before_q1_for_q3_left_up
             )
+            part_of_highest_q6_q1_for_q3_2_left_up = (
+                (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_left_up)/swing_q6_q1_for_q3_left
+            )
             # the arc: cosines from its centre
             highest_q6_q1_for_q3_left_up = select(
-                (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_up)/swing_q6_q1_for_q3_left > 1.0,
+                part_of_highest_q6_q1_for_q3_2_left_up > 1.0,
                 1.0,
-                select(
-                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_up)/swing_q6_q1_for_q3_left < -1.0,
-                    -1.0,
-                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_up)/swing_q6_q1_for_q3_left,
-                ),
+                select(part_of_highest_q6_q1_for_q3_2_left_up < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2_left_up),
+            )
+            part_of_lowest_q6_q1_for_q3_left_up = (
+                (level_q6_q1_for_q3_left_up + part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3_left
             )
             lowest_q6_q1_for_q3_left_up = select(
-                (-level_q6_q1_for_q3_left_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left > 1.0,
+                -part_of_lowest_q6_q1_for_q3_left_up > 1.0,
                 1.0,
-                select(
-                    (-level_q6_q1_for_q3_left_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left < -1.0,
-                    -1.0,
-                    (-level_q6_q1_for_q3_left_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left,
-                ),
+                select(-part_of_lowest_q6_q1_for_q3_left_up < -1.0, -1.0, -part_of_lowest_q6_q1_for_q3_left_up),
             )
             found = elsewhere(
-                swing_q6_q1_for_q3_left > 9.999999000000001e-13*size_q1_for_q3,
+                swing_q6_q1_for_q3_left > part_of_divisor_q6_q1_for_q3,
                 (
                     highest_q6_q1_for_q3_left_down, lowest_q6_q1_for_q3_left_down, highest_q6_q1_for_q3_left_up,
                     lowest_q6_q1_for_q3_left_up,
@@ -1266,8 +1313,8 @@ class ArrayPrograms(Programs):
                 return (near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down)
 
             near_along_q1_for_q3_left_down = (
-                (near_cos_q6_q1_for_q3_left_down*r11 - near_sin_q6_q1_for_q3_left_down*r12)*near_p_q1_for_q3_left_down
-                - (near_sin_q6_q1_for_q3_left_down*r22 - near_cos_q6_q1_for_q3_left_down*r21)*near_q_q1_for_q3_left_down
+                (near_cos_q6_q1_for_q3_left_down*r21 - near_sin_q6_q1_for_q3_left_down*r22)*near_q_q1_for_q3_left_down
+                - (near_sin_q6_q1_for_q3_left_down*r12 - near_cos_q6_q1_for_q3_left_down*r11)*near_p_q1_for_q3_left_down
             )
             # of two opposite ways
             near_towards_q1_for_q3_left_down = select(
@@ -1279,14 +1326,11 @@ class ArrayPrograms(Programs):
                 near_along_q1_for_q3_left_down,
             )
             near_side_q1_for_q3_left_down = select(near_towards_q1_for_q3_left_down < 0.0, -1.0, 1.0)
+            part_of_near_cos_q1_for_q3_left_down = near_side_q1_for_q3_left_down/near_radius_q1_for_q3_left_down
             # the earlier angle follows
-            near_cos_q1_for_q3_left_down = (
-                -near_q_q1_for_q3_left_down*near_side_q1_for_q3_left_down/near_radius_q1_for_q3_left_down
-            )
+            near_cos_q1_for_q3_left_down = -near_q_q1_for_q3_left_down*part_of_near_cos_q1_for_q3_left_down
             # it stays where every angle gives this one
-            near_sin_q1_for_q3_left_down = (
-                near_p_q1_for_q3_left_down*near_side_q1_for_q3_left_down/near_radius_q1_for_q3_left_down
-            )
+            near_sin_q1_for_q3_left_down = near_p_q1_for_q3_left_down*part_of_near_cos_q1_for_q3_left_down
             near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down = elsewhere(
                 near_radius_q1_for_q3_left_down > 1e-12,
                 (near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down),
@@ -1347,14 +1391,11 @@ class ArrayPrograms(Programs):
                 near_along_q1_for_q3_left_up,
             )
             near_side_q1_for_q3_left_up = select(near_towards_q1_for_q3_left_up < 0.0, -1.0, 1.0)
+            part_of_near_cos_q1_for_q3_left_up = near_side_q1_for_q3_left_up/near_radius_q1_for_q3_left_up
             # the earlier angle follows
-            near_cos_q1_for_q3_left_up = (
-                -near_q_q1_for_q3_left_up*near_side_q1_for_q3_left_up/near_radius_q1_for_q3_left_up
-            )
+            near_cos_q1_for_q3_left_up = -near_q_q1_for_q3_left_up*part_of_near_cos_q1_for_q3_left_up
             # it stays where every angle gives this one
-            near_sin_q1_for_q3_left_up = (
-                near_p_q1_for_q3_left_up*near_side_q1_for_q3_left_up/near_radius_q1_for_q3_left_up
-            )
+            near_sin_q1_for_q3_left_up = near_p_q1_for_q3_left_up*part_of_near_cos_q1_for_q3_left_up
             near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up = elsewhere(
                 near_radius_q1_for_q3_left_up > 1e-12,
                 (near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up),
@@ -1368,38 +1409,22 @@ class ArrayPrograms(Programs):
                 + r22_from_q1_before_q1_for_q3_right*r22_from_q1_before_q1_for_q3_right
             )
             cos_q5_before_q1_for_q3_right = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right
-
-            def elsewhere_length_q6_before_q1_for_q3_right(free_a6: Real) -> Reals:
-                length_q6_before_q1_for_q3_right = 1.0
-                cos_q6_before_q1_for_q3_right_down = cos(free_a6)
-                sin_q6_before_q1_for_q3_right_down = sin(free_a6)
-                cos_q6_before_q1_for_q3_right_up = cos_q6_before_q1_for_q3_right_down
-                sin_q6_before_q1_for_q3_right_up = sin_q6_before_q1_for_q3_right_down
-                return (
-                    length_q6_before_q1_for_q3_right, cos_q6_before_q1_for_q3_right_down, sin_q6_before_q1_for_q3_right_down,
-                    cos_q6_before_q1_for_q3_right_up, sin_q6_before_q1_for_q3_right_up,
-                )
-
-            length_q6_before_q1_for_q3_right = radius_q6_before_q1_for_q3_right
-            cos_q6_before_q1_for_q3_right_down = -r21_from_q1_before_q1_for_q3_right/length_q6_before_q1_for_q3_right
-            sin_q6_before_q1_for_q3_right_down = r22_from_q1_before_q1_for_q3_right/length_q6_before_q1_for_q3_right
-            cos_q6_before_q1_for_q3_right_up = -cos_q6_before_q1_for_q3_right_down
-            sin_q6_before_q1_for_q3_right_up = -sin_q6_before_q1_for_q3_right_down
-            found = elsewhere(
-                radius_q6_before_q1_for_q3_right > 1e-11,
-                (
-                    length_q6_before_q1_for_q3_right, cos_q6_before_q1_for_q3_right_down,
-                    sin_q6_before_q1_for_q3_right_down, cos_q6_before_q1_for_q3_right_up,
-                    sin_q6_before_q1_for_q3_right_up,
-                ),
-                elsewhere_length_q6_before_q1_for_q3_right,
-                (free_a6,),
+            length_q6_before_q1_for_q3_right = select(
+                radius_q6_before_q1_for_q3_right > 1e-11, radius_q6_before_q1_for_q3_right, 1.0,
             )
-            (
-                length_q6_before_q1_for_q3_right, cos_q6_before_q1_for_q3_right_down,
-                sin_q6_before_q1_for_q3_right_down, cos_q6_before_q1_for_q3_right_up,
-                sin_q6_before_q1_for_q3_right_up,
-            ) = found
+            one_by_length_q6_before_q1_for_q3_right = 1.0/length_q6_before_q1_for_q3_right
+            part_of_cos_q6_before_q1_for_q3_right_down = (
+                one_by_length_q6_before_q1_for_q3_right*r21_from_q1_before_q1_for_q3_right
+            )
+            cos_q6_before_q1_for_q3_right_down = select(
+                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6,
+            )
+            part_of_sin_q6_before_q1_for_q3_right_down = (
+                one_by_length_q6_before_q1_for_q3_right*r22_from_q1_before_q1_for_q3_right
+            )
+            sin_q6_before_q1_for_q3_right_down = select(
+                radius_q6_before_q1_for_q3_right > 1e-11, part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6,
+            )
             r21_from_q1_before_q6_before_q1_for_q3_right_down = (
                 r31*cos_q6_before_q1_for_q3_right_down - r32*sin_q6_before_q1_for_q3_right_down
             )
@@ -1414,23 +1439,25 @@ class ArrayPrograms(Programs):
                 r32*cos_q6_before_q1_for_q3_right_down + r31*sin_q6_before_q1_for_q3_right_down
             )
             wrist_y_from_q1_before_q1_for_q3_right_down = (
-                wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3_right_down - d1
+                wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_right_down
             )
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3_right_down = (
                 wrist_x_from_q1_before_q1_for_q3_right_down*wrist_x_from_q1_before_q1_for_q3_right_down
-                + wrist_y_from_q1_before_q1_for_q3_right_down*wrist_y_from_q1_before_q1_for_q3_right_down - a2*a2 - a3*a3
+                + wrist_y_from_q1_before_q1_for_q3_right_down*wrist_y_from_q1_before_q1_for_q3_right_down
+                - a2_squared_plus_a3_squared
             )
-            along_q6_q1_for_q3_right = (
-                2.0*d5*r32*wrist_z - 2.0*d1*d5*r32
-                - 2.0*ahead_q1_before_q1_for_q3_right*d5*r31*cos_q5_before_q1_for_q3_right
-            )
-            across_q6_q1_for_q3_right = (
-                2.0*d5*r31*wrist_z + 2.0*ahead_q1_before_q1_for_q3_right*d5*r32*cos_q5_before_q1_for_q3_right
-                - 2.0*d1*d5*r31
-            )
+            part_of_across_q6_q1_for_q3_2_right = ahead_q1_before_q1_for_q3_right*twice_d5*cos_q5_before_q1_for_q3_right
+            along_q6_q1_for_q3_right = -part_of_across_q6_q1_for_q3*r32 - part_of_across_q6_q1_for_q3_2_right*r31
+            across_q6_q1_for_q3_right = part_of_across_q6_q1_for_q3_2_right*r32 - part_of_across_q6_q1_for_q3*r31
             swing_q6_q1_for_q3_right = sqrt(
                 across_q6_q1_for_q3_right*across_q6_q1_for_q3_right + along_q6_q1_for_q3_right*along_q6_q1_for_q3_right
+            )
+            cos_q6_before_q1_for_q3_right_up = select(
+                radius_q6_before_q1_for_q3_right > 1e-11, part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6,
+            )
+            sin_q6_before_q1_for_q3_right_up = select(
+                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6,
             )
             r21_from_q1_before_q6_before_q1_for_q3_right_up = (
                 r31*cos_q6_before_q1_for_q3_right_up - r32*sin_q6_before_q1_for_q3_right_up
@@ -1445,11 +1472,14 @@ class ArrayPrograms(Programs):
             r22_from_q1_before_q6_before_q1_for_q3_right_up = (
                 r32*cos_q6_before_q1_for_q3_right_up + r31*sin_q6_before_q1_for_q3_right_up
             )
-            wrist_y_from_q1_before_q1_for_q3_right_up = wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3_right_up - d1
+            wrist_y_from_q1_before_q1_for_q3_right_up = (
+                wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_right_up
+            )
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3_right_up = (
                 wrist_x_from_q1_before_q1_for_q3_right_up*wrist_x_from_q1_before_q1_for_q3_right_up
-                + wrist_y_from_q1_before_q1_for_q3_right_up*wrist_y_from_q1_before_q1_for_q3_right_up - a2*a2 - a3*a3
+                + wrist_y_from_q1_before_q1_for_q3_right_up*wrist_y_from_q1_before_q1_for_q3_right_up
+                - a2_squared_plus_a3_squared
             )
 
             def elsewhere_highest_q6_q1_for_q3_right_down() -> Reals:
@@ -1466,50 +1496,46 @@ class ArrayPrograms(Programs):
                 value_q1_for_q3_right_down - across_q6_q1_for_q3_right*sin_q6_before_q1_for_q3_right_down
                 - along_q6_q1_for_q3_right*cos_q6_before_q1_for_q3_right_down
             )
+            part_of_highest_q6_q1_for_q3_2_right_down = (
+                (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_right_down)/swing_q6_q1_for_q3_right
+            )
             # the arc: cosines from its centre
             highest_q6_q1_for_q3_right_down = select(
-                (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_down)/swing_q6_q1_for_q3_right > 1.0,
+                part_of_highest_q6_q1_for_q3_2_right_down > 1.0,
                 1.0,
-                select(
-                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_down)/swing_q6_q1_for_q3_right < -1.0,
-                    -1.0,
-                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_down)/swing_q6_q1_for_q3_right,
-                ),
+                select(part_of_highest_q6_q1_for_q3_2_right_down < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2_right_down),
+            )
+            part_of_lowest_q6_q1_for_q3_right_down = (
+                (level_q6_q1_for_q3_right_down + part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3_right
             )
             lowest_q6_q1_for_q3_right_down = select(
-                (-level_q6_q1_for_q3_right_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right > 1.0,
+                -part_of_lowest_q6_q1_for_q3_right_down > 1.0,
                 1.0,
-                select(
-                    (-level_q6_q1_for_q3_right_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right < -1.0,
-                    -1.0,
-                    (-level_q6_q1_for_q3_right_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right,
-                ),
+                select(-part_of_lowest_q6_q1_for_q3_right_down < -1.0, -1.0, -part_of_lowest_q6_q1_for_q3_right_down),
             )
             level_q6_q1_for_q3_right_up = (
                 value_q1_for_q3_right_up - across_q6_q1_for_q3_right*sin_q6_before_q1_for_q3_right_up
                 - along_q6_q1_for_q3_right*cos_q6_before_q1_for_q3_right_up
             )
+            part_of_highest_q6_q1_for_q3_2_right_up = (
+                (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_right_up)/swing_q6_q1_for_q3_right
+            )
             # the arc: cosines from its centre
             highest_q6_q1_for_q3_right_up = select(
-                (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_up)/swing_q6_q1_for_q3_right > 1.0,
+                part_of_highest_q6_q1_for_q3_2_right_up > 1.0,
                 1.0,
-                select(
-                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_up)/swing_q6_q1_for_q3_right < -1.0,
-                    -1.0,
-                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_up)/swing_q6_q1_for_q3_right,
-                ),
+                select(part_of_highest_q6_q1_for_q3_2_right_up < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2_right_up),
+            )
+            part_of_lowest_q6_q1_for_q3_right_up = (
+                (level_q6_q1_for_q3_right_up + part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3_right
             )
             lowest_q6_q1_for_q3_right_up = select(
-                (-level_q6_q1_for_q3_right_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right > 1.0,
+                -part_of_lowest_q6_q1_for_q3_right_up > 1.0,
                 1.0,
-                select(
-                    (-level_q6_q1_for_q3_right_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right < -1.0,
-                    -1.0,
-                    (-level_q6_q1_for_q3_right_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right,
-                ),
+                select(-part_of_lowest_q6_q1_for_q3_right_up < -1.0, -1.0, -part_of_lowest_q6_q1_for_q3_right_up),
             )
             found = elsewhere(
-                swing_q6_q1_for_q3_right > 9.999999000000001e-13*size_q1_for_q3,
+                swing_q6_q1_for_q3_right > part_of_divisor_q6_q1_for_q3,
                 (
                     highest_q6_q1_for_q3_right_down, lowest_q6_q1_for_q3_right_down, highest_q6_q1_for_q3_right_up,
                     lowest_q6_q1_for_q3_right_up,
@@ -1564,10 +1590,10 @@ class ArrayPrograms(Programs):
                 return (near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down)
 
             near_along_q1_for_q3_right_down = (
-                (near_cos_q6_q1_for_q3_right_down*r11 - near_sin_q6_q1_for_q3_right_down*r12)*near_p_q1_for_q3_right_down
+                (near_cos_q6_q1_for_q3_right_down*r21 - near_sin_q6_q1_for_q3_right_down*r22)*near_q_q1_for_q3_right_down
                 - (
-                    near_sin_q6_q1_for_q3_right_down*r22 - near_cos_q6_q1_for_q3_right_down*r21
-                )*near_q_q1_for_q3_right_down
+                    near_sin_q6_q1_for_q3_right_down*r12 - near_cos_q6_q1_for_q3_right_down*r11
+                )*near_p_q1_for_q3_right_down
             )
             # of two opposite ways
             near_towards_q1_for_q3_right_down = select(
@@ -1579,14 +1605,11 @@ class ArrayPrograms(Programs):
                 near_along_q1_for_q3_right_down,
             )
             near_side_q1_for_q3_right_down = select(near_towards_q1_for_q3_right_down < 0.0, -1.0, 1.0)
+            part_of_near_cos_q1_for_q3_right_down = near_side_q1_for_q3_right_down/near_radius_q1_for_q3_right_down
             # the earlier angle follows
-            near_cos_q1_for_q3_right_down = (
-                -near_q_q1_for_q3_right_down*near_side_q1_for_q3_right_down/near_radius_q1_for_q3_right_down
-            )
+            near_cos_q1_for_q3_right_down = -near_q_q1_for_q3_right_down*part_of_near_cos_q1_for_q3_right_down
             # it stays where every angle gives this one
-            near_sin_q1_for_q3_right_down = (
-                near_p_q1_for_q3_right_down*near_side_q1_for_q3_right_down/near_radius_q1_for_q3_right_down
-            )
+            near_sin_q1_for_q3_right_down = near_p_q1_for_q3_right_down*part_of_near_cos_q1_for_q3_right_down
             near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down = elsewhere(
                 near_radius_q1_for_q3_right_down > 1e-12,
                 (near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down),
@@ -1647,14 +1670,11 @@ class ArrayPrograms(Programs):
                 near_along_q1_for_q3_right_up,
             )
             near_side_q1_for_q3_right_up = select(near_towards_q1_for_q3_right_up < 0.0, -1.0, 1.0)
+            part_of_near_cos_q1_for_q3_right_up = near_side_q1_for_q3_right_up/near_radius_q1_for_q3_right_up
             # the earlier angle follows
-            near_cos_q1_for_q3_right_up = (
-                -near_q_q1_for_q3_right_up*near_side_q1_for_q3_right_up/near_radius_q1_for_q3_right_up
-            )
+            near_cos_q1_for_q3_right_up = -near_q_q1_for_q3_right_up*part_of_near_cos_q1_for_q3_right_up
             # it stays where every angle gives this one
-            near_sin_q1_for_q3_right_up = (
-                near_p_q1_for_q3_right_up*near_side_q1_for_q3_right_up/near_radius_q1_for_q3_right_up
-            )
+            near_sin_q1_for_q3_right_up = near_p_q1_for_q3_right_up*part_of_near_cos_q1_for_q3_right_up
             near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up = elsewhere(
                 near_radius_q1_for_q3_right_up > 1e-12,
                 (near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up),
@@ -1713,11 +1733,11 @@ class ArrayPrograms(Programs):
 
             mirrored_along_q1_for_q3_left_down = (
                 (
-                    mirrored_cos_q6_q1_for_q3_left_down*r11 - mirrored_sin_q6_q1_for_q3_left_down*r12
-                )*mirrored_p_q1_for_q3_left_down
-                - (
-                    mirrored_sin_q6_q1_for_q3_left_down*r22 - mirrored_cos_q6_q1_for_q3_left_down*r21
+                    mirrored_cos_q6_q1_for_q3_left_down*r21 - mirrored_sin_q6_q1_for_q3_left_down*r22
                 )*mirrored_q_q1_for_q3_left_down
+                - (
+                    mirrored_sin_q6_q1_for_q3_left_down*r12 - mirrored_cos_q6_q1_for_q3_left_down*r11
+                )*mirrored_p_q1_for_q3_left_down
             )
             # of two opposite ways
             mirrored_towards_q1_for_q3_left_down = select(
@@ -1729,14 +1749,13 @@ class ArrayPrograms(Programs):
                 mirrored_along_q1_for_q3_left_down,
             )
             mirrored_side_q1_for_q3_left_down = select(mirrored_towards_q1_for_q3_left_down < 0.0, -1.0, 1.0)
+            part_of_mirrored_cos_q1_for_q3_left_down = (
+                mirrored_side_q1_for_q3_left_down/mirrored_radius_q1_for_q3_left_down
+            )
             # the earlier angle follows
-            mirrored_cos_q1_for_q3_left_down = (
-                -mirrored_q_q1_for_q3_left_down*mirrored_side_q1_for_q3_left_down/mirrored_radius_q1_for_q3_left_down
-            )
+            mirrored_cos_q1_for_q3_left_down = -mirrored_q_q1_for_q3_left_down*part_of_mirrored_cos_q1_for_q3_left_down
             # it stays where every angle gives this one
-            mirrored_sin_q1_for_q3_left_down = (
-                mirrored_p_q1_for_q3_left_down*mirrored_side_q1_for_q3_left_down/mirrored_radius_q1_for_q3_left_down
-            )
+            mirrored_sin_q1_for_q3_left_down = mirrored_p_q1_for_q3_left_down*part_of_mirrored_cos_q1_for_q3_left_down
             mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down = elsewhere(
                 mirrored_radius_q1_for_q3_left_down > 1e-12,
                 (mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down),
@@ -1804,14 +1823,11 @@ class ArrayPrograms(Programs):
                 mirrored_along_q1_for_q3_left_up,
             )
             mirrored_side_q1_for_q3_left_up = select(mirrored_towards_q1_for_q3_left_up < 0.0, -1.0, 1.0)
+            part_of_mirrored_cos_q1_for_q3_left_up = mirrored_side_q1_for_q3_left_up/mirrored_radius_q1_for_q3_left_up
             # the earlier angle follows
-            mirrored_cos_q1_for_q3_left_up = (
-                -mirrored_q_q1_for_q3_left_up*mirrored_side_q1_for_q3_left_up/mirrored_radius_q1_for_q3_left_up
-            )
+            mirrored_cos_q1_for_q3_left_up = -mirrored_q_q1_for_q3_left_up*part_of_mirrored_cos_q1_for_q3_left_up
             # it stays where every angle gives this one
-            mirrored_sin_q1_for_q3_left_up = (
-                mirrored_p_q1_for_q3_left_up*mirrored_side_q1_for_q3_left_up/mirrored_radius_q1_for_q3_left_up
-            )
+            mirrored_sin_q1_for_q3_left_up = mirrored_p_q1_for_q3_left_up*part_of_mirrored_cos_q1_for_q3_left_up
             mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up = elsewhere(
                 mirrored_radius_q1_for_q3_left_up > 1e-12,
                 (mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up),
@@ -1867,11 +1883,11 @@ class ArrayPrograms(Programs):
 
             mirrored_along_q1_for_q3_right_down = (
                 (
-                    mirrored_cos_q6_q1_for_q3_right_down*r11 - mirrored_sin_q6_q1_for_q3_right_down*r12
-                )*mirrored_p_q1_for_q3_right_down
-                - (
-                    mirrored_sin_q6_q1_for_q3_right_down*r22 - mirrored_cos_q6_q1_for_q3_right_down*r21
+                    mirrored_cos_q6_q1_for_q3_right_down*r21 - mirrored_sin_q6_q1_for_q3_right_down*r22
                 )*mirrored_q_q1_for_q3_right_down
+                - (
+                    mirrored_sin_q6_q1_for_q3_right_down*r12 - mirrored_cos_q6_q1_for_q3_right_down*r11
+                )*mirrored_p_q1_for_q3_right_down
             )
             # of two opposite ways
             mirrored_towards_q1_for_q3_right_down = select(
@@ -1883,14 +1899,13 @@ class ArrayPrograms(Programs):
                 mirrored_along_q1_for_q3_right_down,
             )
             mirrored_side_q1_for_q3_right_down = select(mirrored_towards_q1_for_q3_right_down < 0.0, -1.0, 1.0)
+            part_of_mirrored_cos_q1_for_q3_right_down = (
+                mirrored_side_q1_for_q3_right_down/mirrored_radius_q1_for_q3_right_down
+            )
             # the earlier angle follows
-            mirrored_cos_q1_for_q3_right_down = (
-                -mirrored_q_q1_for_q3_right_down*mirrored_side_q1_for_q3_right_down/mirrored_radius_q1_for_q3_right_down
-            )
+            mirrored_cos_q1_for_q3_right_down = -mirrored_q_q1_for_q3_right_down*part_of_mirrored_cos_q1_for_q3_right_down
             # it stays where every angle gives this one
-            mirrored_sin_q1_for_q3_right_down = (
-                mirrored_p_q1_for_q3_right_down*mirrored_side_q1_for_q3_right_down/mirrored_radius_q1_for_q3_right_down
-            )
+            mirrored_sin_q1_for_q3_right_down = mirrored_p_q1_for_q3_right_down*part_of_mirrored_cos_q1_for_q3_right_down
             mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down = elsewhere(
                 mirrored_radius_q1_for_q3_right_down > 1e-12,
                 (mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down),
@@ -1965,14 +1980,11 @@ class ArrayPrograms(Programs):
                 mirrored_along_q1_for_q3_right_up,
             )
             mirrored_side_q1_for_q3_right_up = select(mirrored_towards_q1_for_q3_right_up < 0.0, -1.0, 1.0)
+            part_of_mirrored_cos_q1_for_q3_right_up = mirrored_side_q1_for_q3_right_up/mirrored_radius_q1_for_q3_right_up
             # the earlier angle follows
-            mirrored_cos_q1_for_q3_right_up = (
-                -mirrored_q_q1_for_q3_right_up*mirrored_side_q1_for_q3_right_up/mirrored_radius_q1_for_q3_right_up
-            )
+            mirrored_cos_q1_for_q3_right_up = -mirrored_q_q1_for_q3_right_up*part_of_mirrored_cos_q1_for_q3_right_up
             # it stays where every angle gives this one
-            mirrored_sin_q1_for_q3_right_up = (
-                mirrored_p_q1_for_q3_right_up*mirrored_side_q1_for_q3_right_up/mirrored_radius_q1_for_q3_right_up
-            )
+            mirrored_sin_q1_for_q3_right_up = mirrored_p_q1_for_q3_right_up*part_of_mirrored_cos_q1_for_q3_right_up
             mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up = elsewhere(
                 mirrored_radius_q1_for_q3_right_up > 1e-12,
                 (mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up),
@@ -2002,7 +2014,7 @@ class ArrayPrograms(Programs):
                 (mirrored_cos_q1_for_q3_right_up, mirrored_cost_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up),
             )
             found = elsewhere(
-                distance_q1 > 1e-11*machine_scale,
+                distance_q1 > machine_scale_times_free_angle,
                 (
                     swept_cost_q1_for_q3_left_down, swept_cos_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down,
                     swept_cost_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up,
@@ -2025,22 +2037,22 @@ class ArrayPrograms(Programs):
 
             def elsewhere_ahead_q1_left_down(
                 ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
-                follows_q1_for_q3_left_down: Truth, sin_q1_before_q1_for_q3_left: Real,
-                swept_cos_q1_for_q3_left_down: Real, swept_cost_q1_for_q3_left_down: Real,
-                swept_sin_q1_for_q3_left_down: Real, turn_q1_for_q3_left_down: Real, turned_cos_q1_for_q3_left_down: Real,
-                turned_cost_q1_for_q3_left_down: Real, turned_length_q1_for_q3_left_down: Real,
+                follows_q1_for_q3_left_down: Truth, one_by_turned_length_q1_for_q3_left_down: Real,
+                sin_q1_before_q1_for_q3_left: Real, swept_cos_q1_for_q3_left_down: Real,
+                swept_cost_q1_for_q3_left_down: Real, swept_sin_q1_for_q3_left_down: Real, turn_q1_for_q3_left_down: Real,
+                turned_cos_q1_for_q3_left_down: Real, turned_cost_q1_for_q3_left_down: Real,
                 turned_sin_q1_for_q3_left_down: Real, wrist_x: Real, wrist_y: Real,
             ) -> Reals:
 
                 def elsewhere_best_cost_q1_for_q3_left_down(
-                    ahead_q1_before_q1_for_q3_right: Real, turn_q1_for_q3_left_down: Real,
-                    turned_cos_q1_for_q3_left_down: Real, turned_cost_q1_for_q3_left_down: Real,
-                    turned_length_q1_for_q3_left_down: Real, turned_sin_q1_for_q3_left_down: Real,
+                    ahead_q1_before_q1_for_q3_right: Real, one_by_turned_length_q1_for_q3_left_down: Real,
+                    turn_q1_for_q3_left_down: Real, turned_cos_q1_for_q3_left_down: Real,
+                    turned_cost_q1_for_q3_left_down: Real, turned_sin_q1_for_q3_left_down: Real,
                 ) -> Reals:
                     best_cost_q1_for_q3_left_down = turned_cost_q1_for_q3_left_down
                     turned_ahead_q1_for_q3_left_down = (
                         (-ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_left_down)
-                        /turned_length_q1_for_q3_left_down
+                        *one_by_turned_length_q1_for_q3_left_down
                     )
                     best_ahead_q1_for_q3_left_down = turned_ahead_q1_for_q3_left_down
                     best_cos_q1_for_q3_left_down = turned_cos_q1_for_q3_left_down
@@ -2065,8 +2077,8 @@ class ArrayPrograms(Programs):
                     ),
                     elsewhere_best_cost_q1_for_q3_left_down,
                     (
-                        ahead_q1_before_q1_for_q3_right, turn_q1_for_q3_left_down, turned_cos_q1_for_q3_left_down,
-                        turned_cost_q1_for_q3_left_down, turned_length_q1_for_q3_left_down, turned_sin_q1_for_q3_left_down,
+                        ahead_q1_before_q1_for_q3_right, one_by_turned_length_q1_for_q3_left_down, turn_q1_for_q3_left_down,
+                        turned_cos_q1_for_q3_left_down, turned_cost_q1_for_q3_left_down, turned_sin_q1_for_q3_left_down,
                     ),
                 )
                 (
@@ -2087,7 +2099,7 @@ class ArrayPrograms(Programs):
                 cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
                 sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
                 ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down = elsewhere(
-                    best_cost_q1_for_q3_left_down > 1e-12*machine_scale,
+                    best_cost_q1_for_q3_left_down > machine_scale_times_rounding,
                     (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down),
                     elsewhere_ahead_q1_left_down,
                     (best_ahead_q1_for_q3_left_down, best_cos_q1_for_q3_left_down, best_sin_q1_for_q3_left_down),
@@ -2103,9 +2115,9 @@ class ArrayPrograms(Programs):
                 elsewhere_ahead_q1_left_down,
                 (
                     ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, follows_q1_for_q3_left_down,
-                    sin_q1_before_q1_for_q3_left, swept_cos_q1_for_q3_left_down, swept_cost_q1_for_q3_left_down,
-                    swept_sin_q1_for_q3_left_down, turn_q1_for_q3_left_down, turned_cos_q1_for_q3_left_down,
-                    turned_cost_q1_for_q3_left_down, turned_length_q1_for_q3_left_down, turned_sin_q1_for_q3_left_down,
+                    one_by_turned_length_q1_for_q3_left_down, sin_q1_before_q1_for_q3_left, swept_cos_q1_for_q3_left_down,
+                    swept_cost_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down, turn_q1_for_q3_left_down,
+                    turned_cos_q1_for_q3_left_down, turned_cost_q1_for_q3_left_down, turned_sin_q1_for_q3_left_down,
                     wrist_x, wrist_y,
                 ),
             )
@@ -2150,36 +2162,39 @@ class ArrayPrograms(Programs):
                 )
                 turn_q1_for_q3_left_up = -excess_q1_for_q3_left_up/rate_q1_for_q3_left_up  # to the boundary of the later step
                 (turn_q1_for_q3_left_up,) = elsewhere(
-                    absolute(rate_q1_for_q3_left_up) > 1e-12*size_q1_for_q3,
+                    absolute(rate_q1_for_q3_left_up) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_left_up,),
                     elsewhere_turn_q1_for_q3_left_up,
                     (),
                 )
+                turn_q1_for_q3_squared_left_up = turn_q1_for_q3_left_up*turn_q1_for_q3_left_up
                 # whether it follows q6
                 follows_q1_for_q3_left_up = (
-                    (turn_q1_for_q3_left_up*turn_q1_for_q3_left_up > 1e-12)
+                    (turn_q1_for_q3_squared_left_up > 1e-12)
                     | (
                         (
                             r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
                             + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
                         )
-                        *turn_q1_for_q3_left_up*turn_q1_for_q3_left_up > 1e-12*radius_q6_before_q1_for_q3_left
+                        *turn_q1_for_q3_squared_left_up > 1e-12*radius_q6_before_q1_for_q3_left
                         *radius_q6_before_q1_for_q3_left
                     )
                 )
 
                 def elsewhere_best_cost_q1_for_q3_left_up(
                     ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
-                    sin_q1_before_q1_for_q3_left: Real, turn_q1_for_q3_left_up: Real, wrist_x: Real, wrist_y: Real,
+                    sin_q1_before_q1_for_q3_left: Real, turn_q1_for_q3_left_up: Real, turn_q1_for_q3_squared_left_up: Real,
+                    wrist_x: Real, wrist_y: Real,
                 ) -> Reals:
-                    turned_length_q1_for_q3_left_up = root(1.0 + turn_q1_for_q3_left_up*turn_q1_for_q3_left_up)
+                    turned_length_q1_for_q3_left_up = root(1.0 + turn_q1_for_q3_squared_left_up)
+                    one_by_turned_length_q1_for_q3_left_up = 1.0/turned_length_q1_for_q3_left_up
                     turned_cos_q1_for_q3_left_up = (
-                        (cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_up*sin_q1_before_q1_for_q3_left)
-                        /turned_length_q1_for_q3_left_up
+                        one_by_turned_length_q1_for_q3_left_up
+                        *(cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_up*sin_q1_before_q1_for_q3_left)
                     )
                     turned_sin_q1_for_q3_left_up = (
-                        (sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left)
-                        /turned_length_q1_for_q3_left_up
+                        one_by_turned_length_q1_for_q3_left_up
+                        *(sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left)
                     )
                     # what is left of its own equation
                     turned_cost_q1_for_q3_left_up = absolute(
@@ -2188,7 +2203,7 @@ class ArrayPrograms(Programs):
                     best_cost_q1_for_q3_left_up = turned_cost_q1_for_q3_left_up
                     turned_ahead_q1_for_q3_left_up = (
                         (-ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_left_up)
-                        /turned_length_q1_for_q3_left_up
+                        *one_by_turned_length_q1_for_q3_left_up
                     )
                     best_ahead_q1_for_q3_left_up = turned_ahead_q1_for_q3_left_up
                     best_cos_q1_for_q3_left_up = turned_cos_q1_for_q3_left_up
@@ -2212,7 +2227,7 @@ class ArrayPrograms(Programs):
                     elsewhere_best_cost_q1_for_q3_left_up,
                     (
                         ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left,
-                        turn_q1_for_q3_left_up, wrist_x, wrist_y,
+                        turn_q1_for_q3_left_up, turn_q1_for_q3_squared_left_up, wrist_x, wrist_y,
                     ),
                 )
                 (
@@ -2232,7 +2247,7 @@ class ArrayPrograms(Programs):
                 cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
                 sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
                 ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up = elsewhere(
-                    best_cost_q1_for_q3_left_up > 1e-12*machine_scale,
+                    best_cost_q1_for_q3_left_up > machine_scale_times_rounding,
                     (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up),
                     elsewhere_ahead_q1_left_up,
                     (best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up, best_sin_q1_for_q3_left_up),
@@ -2272,10 +2287,9 @@ class ArrayPrograms(Programs):
                 )
 
             radius_q6_rate_q1_for_q3_right = (
-                0.5
-                *(
-                    2.0*r21_from_q1_before_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
-                    + 2.0*r22_from_q1_before_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
+                -(
+                    -r21_from_q1_before_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
+                    - r22_from_q1_before_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
                 )
                 /radius_q6_before_q1_for_q3_right
             )
@@ -2291,19 +2305,33 @@ class ArrayPrograms(Programs):
                 )
 
             cos_q6_rate_q1_for_q3_right_down = (
-                r21_from_q1_before_q1_for_q3_right*radius_q6_rate_q1_for_q3_right/(
-                    length_q6_before_q1_for_q3_right*length_q6_before_q1_for_q3_right
+                one_by_length_q6_before_q1_for_q3_right
+                *(
+                    part_of_cos_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
+                    - r21_from_q1_rate_q1_for_q3_right
                 )
-                - r21_from_q1_rate_q1_for_q3_right/length_q6_before_q1_for_q3_right
             )
             sin_q6_rate_q1_for_q3_right_down = (
-                r22_from_q1_rate_q1_for_q3_right/length_q6_before_q1_for_q3_right
-                - r22_from_q1_before_q1_for_q3_right*radius_q6_rate_q1_for_q3_right/(
-                    length_q6_before_q1_for_q3_right*length_q6_before_q1_for_q3_right
+                (
+                    r22_from_q1_rate_q1_for_q3_right
+                    - part_of_sin_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
+                )
+                *one_by_length_q6_before_q1_for_q3_right
+            )
+            cos_q6_rate_q1_for_q3_right_up = (
+                (
+                    r21_from_q1_rate_q1_for_q3_right
+                    - part_of_cos_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
+                )
+                *one_by_length_q6_before_q1_for_q3_right
+            )
+            sin_q6_rate_q1_for_q3_right_up = (
+                one_by_length_q6_before_q1_for_q3_right
+                *(
+                    part_of_sin_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
+                    - r22_from_q1_rate_q1_for_q3_right
                 )
             )
-            cos_q6_rate_q1_for_q3_right_up = -cos_q6_rate_q1_for_q3_right_down
-            sin_q6_rate_q1_for_q3_right_up = -sin_q6_rate_q1_for_q3_right_down
             found = elsewhere(
                 radius_q6_before_q1_for_q3_right > 1e-11,
                 (
@@ -2373,36 +2401,39 @@ class ArrayPrograms(Programs):
                 # to the boundary of the later step
                 turn_q1_for_q3_right_down = -excess_q1_for_q3_right_down/rate_q1_for_q3_right_down
                 (turn_q1_for_q3_right_down,) = elsewhere(
-                    absolute(rate_q1_for_q3_right_down) > 1e-12*size_q1_for_q3,
+                    absolute(rate_q1_for_q3_right_down) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_right_down,),
                     elsewhere_turn_q1_for_q3_right_down,
                     (),
                 )
+                turn_q1_for_q3_squared_right_down = turn_q1_for_q3_right_down*turn_q1_for_q3_right_down
                 # whether it follows q6
                 follows_q1_for_q3_right_down = (
-                    (turn_q1_for_q3_right_down*turn_q1_for_q3_right_down > 1e-12)
+                    (turn_q1_for_q3_squared_right_down > 1e-12)
                     | (
                         (
                             r21_from_q1_rate_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
                             + r22_from_q1_rate_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
                         )
-                        *turn_q1_for_q3_right_down*turn_q1_for_q3_right_down > 1e-12*radius_q6_before_q1_for_q3_right
+                        *turn_q1_for_q3_squared_right_down > 1e-12*radius_q6_before_q1_for_q3_right
                         *radius_q6_before_q1_for_q3_right
                     )
                 )
 
                 def elsewhere_best_cost_q1_for_q3_right_down(
                     ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
-                    sin_q1_before_q1_for_q3_right: Real, turn_q1_for_q3_right_down: Real, wrist_x: Real, wrist_y: Real,
+                    sin_q1_before_q1_for_q3_right: Real, turn_q1_for_q3_right_down: Real,
+                    turn_q1_for_q3_squared_right_down: Real, wrist_x: Real, wrist_y: Real,
                 ) -> Reals:
-                    turned_length_q1_for_q3_right_down = root(1.0 + turn_q1_for_q3_right_down*turn_q1_for_q3_right_down)
+                    turned_length_q1_for_q3_right_down = root(1.0 + turn_q1_for_q3_squared_right_down)
+                    one_by_turned_length_q1_for_q3_right_down = 1.0/turned_length_q1_for_q3_right_down
                     turned_cos_q1_for_q3_right_down = (
-                        (cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_down*sin_q1_before_q1_for_q3_right)
-                        /turned_length_q1_for_q3_right_down
+                        one_by_turned_length_q1_for_q3_right_down
+                        *(cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_down*sin_q1_before_q1_for_q3_right)
                     )
                     turned_sin_q1_for_q3_right_down = (
-                        (sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right)
-                        /turned_length_q1_for_q3_right_down
+                        one_by_turned_length_q1_for_q3_right_down
+                        *(sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right)
                     )
                     # what is left of its own equation
                     turned_cost_q1_for_q3_right_down = absolute(
@@ -2410,7 +2441,7 @@ class ArrayPrograms(Programs):
                     )
                     best_cost_q1_for_q3_right_down = turned_cost_q1_for_q3_right_down
                     turned_ahead_q1_for_q3_right_down = (
-                        (ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_right_down)/turned_length_q1_for_q3_right_down
+                        (ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_right_down)*one_by_turned_length_q1_for_q3_right_down
                     )
                     best_ahead_q1_for_q3_right_down = turned_ahead_q1_for_q3_right_down
                     best_cos_q1_for_q3_right_down = turned_cos_q1_for_q3_right_down
@@ -2436,7 +2467,7 @@ class ArrayPrograms(Programs):
                     elsewhere_best_cost_q1_for_q3_right_down,
                     (
                         ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right,
-                        turn_q1_for_q3_right_down, wrist_x, wrist_y,
+                        turn_q1_for_q3_right_down, turn_q1_for_q3_squared_right_down, wrist_x, wrist_y,
                     ),
                 )
                 (
@@ -2457,7 +2488,7 @@ class ArrayPrograms(Programs):
                 cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
                 sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
                 ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down = elsewhere(
-                    best_cost_q1_for_q3_right_down > 1e-12*machine_scale,
+                    best_cost_q1_for_q3_right_down > machine_scale_times_rounding,
                     (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down),
                     elsewhere_ahead_q1_right_down,
                     (best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down, best_sin_q1_for_q3_right_down),
@@ -2524,36 +2555,39 @@ class ArrayPrograms(Programs):
                 # to the boundary of the later step
                 turn_q1_for_q3_right_up = -excess_q1_for_q3_right_up/rate_q1_for_q3_right_up
                 (turn_q1_for_q3_right_up,) = elsewhere(
-                    absolute(rate_q1_for_q3_right_up) > 1e-12*size_q1_for_q3,
+                    absolute(rate_q1_for_q3_right_up) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_right_up,),
                     elsewhere_turn_q1_for_q3_right_up,
                     (),
                 )
+                turn_q1_for_q3_squared_right_up = turn_q1_for_q3_right_up*turn_q1_for_q3_right_up
                 # whether it follows q6
                 follows_q1_for_q3_right_up = (
-                    (turn_q1_for_q3_right_up*turn_q1_for_q3_right_up > 1e-12)
+                    (turn_q1_for_q3_squared_right_up > 1e-12)
                     | (
                         (
                             r21_from_q1_rate_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
                             + r22_from_q1_rate_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
                         )
-                        *turn_q1_for_q3_right_up*turn_q1_for_q3_right_up > 1e-12*radius_q6_before_q1_for_q3_right
+                        *turn_q1_for_q3_squared_right_up > 1e-12*radius_q6_before_q1_for_q3_right
                         *radius_q6_before_q1_for_q3_right
                     )
                 )
 
                 def elsewhere_best_cost_q1_for_q3_right_up(
                     ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
-                    sin_q1_before_q1_for_q3_right: Real, turn_q1_for_q3_right_up: Real, wrist_x: Real, wrist_y: Real,
+                    sin_q1_before_q1_for_q3_right: Real, turn_q1_for_q3_right_up: Real, turn_q1_for_q3_squared_right_up: Real,
+                    wrist_x: Real, wrist_y: Real,
                 ) -> Reals:
-                    turned_length_q1_for_q3_right_up = root(1.0 + turn_q1_for_q3_right_up*turn_q1_for_q3_right_up)
+                    turned_length_q1_for_q3_right_up = root(1.0 + turn_q1_for_q3_squared_right_up)
+                    one_by_turned_length_q1_for_q3_right_up = 1.0/turned_length_q1_for_q3_right_up
                     turned_cos_q1_for_q3_right_up = (
-                        (cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_up*sin_q1_before_q1_for_q3_right)
-                        /turned_length_q1_for_q3_right_up
+                        one_by_turned_length_q1_for_q3_right_up
+                        *(cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_up*sin_q1_before_q1_for_q3_right)
                     )
                     turned_sin_q1_for_q3_right_up = (
-                        (sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right)
-                        /turned_length_q1_for_q3_right_up
+                        one_by_turned_length_q1_for_q3_right_up
+                        *(sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right)
                     )
                     # what is left of its own equation
                     turned_cost_q1_for_q3_right_up = absolute(
@@ -2561,7 +2595,7 @@ class ArrayPrograms(Programs):
                     )
                     best_cost_q1_for_q3_right_up = turned_cost_q1_for_q3_right_up
                     turned_ahead_q1_for_q3_right_up = (
-                        (ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_right_up)/turned_length_q1_for_q3_right_up
+                        (ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_right_up)*one_by_turned_length_q1_for_q3_right_up
                     )
                     best_ahead_q1_for_q3_right_up = turned_ahead_q1_for_q3_right_up
                     best_cos_q1_for_q3_right_up = turned_cos_q1_for_q3_right_up
@@ -2585,7 +2619,7 @@ class ArrayPrograms(Programs):
                     elsewhere_best_cost_q1_for_q3_right_up,
                     (
                         ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right,
-                        turn_q1_for_q3_right_up, wrist_x, wrist_y,
+                        turn_q1_for_q3_right_up, turn_q1_for_q3_squared_right_up, wrist_x, wrist_y,
                     ),
                 )
                 (
@@ -2605,7 +2639,7 @@ class ArrayPrograms(Programs):
                 cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
                 sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
                 ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up = elsewhere(
-                    best_cost_q1_for_q3_right_up > 1e-12*machine_scale,
+                    best_cost_q1_for_q3_right_up > machine_scale_times_rounding,
                     (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up),
                     elsewhere_ahead_q1_right_up,
                     (best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up, best_sin_q1_for_q3_right_up),
@@ -2648,7 +2682,7 @@ class ArrayPrograms(Programs):
         cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
         sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
         found = elsewhere(
-            ahead_squared_q1 > 1e-6*machine_scale*machine_scale,
+            ahead_squared_q1 > machine_scale_squared_times_plane,
             (
                 ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down, ahead_q1_left_up, cos_q1_left_up,
                 sin_q1_left_up, ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down, ahead_q1_right_up,
@@ -2658,7 +2692,7 @@ class ArrayPrograms(Programs):
             (
                 ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
                 distance_q1, r11, r12, r13, r21, r22, r23, r31, r32, r33, ref_a6, sin_q1_before_q1_for_q3_left,
-                sin_q1_before_q1_for_q3_right, wrist_x, wrist_y, wrist_z,
+                sin_q1_before_q1_for_q3_right, wrist_x, wrist_y, wrist_y_from_q1_fixed, wrist_z,
             ),
         )
         (
@@ -2674,11 +2708,14 @@ class ArrayPrograms(Programs):
         radius_q6_left_down = sqrt(
             r21_from_q1_left_down*r21_from_q1_left_down + r22_from_q1_left_down*r22_from_q1_left_down
         )
+        q6_radius_of_q5_times_r33_left_down = r33*radius_q6_left_down
 
         def elsewhere_cos_q6_before_q6_of_q3_left_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_left_down = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_down = sin(free_a6)
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = -sin(free_a6)
+            cos_q6_before_q6_of_q3_left_down = cos_of_free_a6  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_down = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down)
 
         # its reference where it is free
@@ -2694,7 +2731,7 @@ class ArrayPrograms(Programs):
             r31*cos_q6_before_q6_of_q3_left_down - r32*sin_q6_before_q6_of_q3_left_down
         )
         r21_from_q1_before_q56_before_q6_of_q3_left_down = (
-            r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left_down - r33*radius_q6_left_down
+            r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left_down - q6_radius_of_q5_times_r33_left_down
         )
         wrist_x_from_q1_before_q6_of_q3_left_down = (
             ahead_q1_left_down - d5*r21_from_q1_before_q56_before_q6_of_q3_left_down
@@ -2702,35 +2739,39 @@ class ArrayPrograms(Programs):
         r22_from_q1_before_q6_before_q6_of_q3_left_down = (
             r32*cos_q6_before_q6_of_q3_left_down + r31*sin_q6_before_q6_of_q3_left_down
         )
-        wrist_y_from_q1_before_q6_of_q3_left_down = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3_left_down - d1
+        wrist_y_from_q1_before_q6_of_q3_left_down = (
+            wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_left_down
+        )
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_left_down = (
             wrist_x_from_q1_before_q6_of_q3_left_down*wrist_x_from_q1_before_q6_of_q3_left_down
-            + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down - a2*a2 - a3*a3
+            + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down
+            - a2_squared_plus_a3_squared
         )
+        size_of_value_q6_of_q3_left_down = absolute(value_q6_of_q3_left_down)
 
         def elsewhere_cos_q6_left_down(
-            ahead_q1_left_down: Real, cos_q5_left_down: Real, cos_q6_before_q6_of_q3_left_down: Real, r31: Real,
-            r32: Real, r33: Real, radius_q6_left_down: Real, sin_q6_before_q6_of_q3_left_down: Real,
-            value_q6_of_q3_left_down: Real, wrist_z: Real,
+            ahead_q1_left_down: Real, cos_q5_left_down: Real, cos_q6_before_q6_of_q3_left_down: Real,
+            q6_radius_of_q5_times_r33_left_down: Real, r31: Real, r32: Real, radius_q6_left_down: Real,
+            sin_q6_before_q6_of_q3_left_down: Real, size_of_value_q6_of_q3_left_down: Real,
+            value_q6_of_q3_left_down: Real, wrist_y_from_q1_fixed: Real,
         ) -> Reals:
-            wrist_y_from_q1_fixed = wrist_z - d1
-            wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_along = d5*r32
 
             def elsewhere_cos_q6_left_down(
-                ahead_q1_left_down: Real, cos_q5_left_down: Real, cos_q6_before_q6_of_q3_left_down: Real, r31: Real,
-                r32: Real, r33: Real, radius_q6_left_down: Real, sin_q6_before_q6_of_q3_left_down: Real,
-                value_q6_of_q3_left_down: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
-                wrist_y_from_q1_fixed: Real,
+                ahead_q1_left_down: Real, cos_q5_left_down: Real, cos_q6_before_q6_of_q3_left_down: Real,
+                q6_radius_of_q5_times_r33_left_down: Real, radius_q6_left_down: Real,
+                sin_q6_before_q6_of_q3_left_down: Real, value_q6_of_q3_left_down: Real, wrist_y_from_q1_across: Real,
+                wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_left_down = ahead_q1_left_down + d5*r33*radius_q6_left_down
-                wrist_x_from_q1_along_left_down = -d5*r31*cos_q5_left_down
+                wrist_x_from_q1_fixed_left_down = ahead_q1_left_down + d5*q6_radius_of_q5_times_r33_left_down
+                wrist_x_from_q1_along_left_down = -wrist_y_from_q1_across*cos_q5_left_down
                 along_q6_of_q3_left_down = (
                     2.0*wrist_x_from_q1_along_left_down*wrist_x_from_q1_fixed_left_down
                     + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
-                wrist_x_from_q1_across_left_down = d5*r32*cos_q5_left_down
+                wrist_x_from_q1_across_left_down = wrist_y_from_q1_along*cos_q5_left_down
                 across_q6_of_q3_left_down = (
                     2.0*wrist_x_from_q1_across_left_down*wrist_x_from_q1_fixed_left_down
                     + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
@@ -2748,26 +2789,21 @@ class ArrayPrograms(Programs):
                     value_q6_of_q3_left_down - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
                     - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down
                 )
+                part_of_highest_q6_of_q3_left_down = (size_q1_for_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down
                 # the arc: cosines from its centre
                 highest_q6_of_q3_left_down = select(
-                    (size_q1_for_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down > 1.0,
+                    part_of_highest_q6_of_q3_left_down > 1.0,
                     1.0,
-                    select(
-                        (size_q1_for_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down < -1.0, -1.0,
-                        (size_q1_for_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down,
-                    ),
+                    select(part_of_highest_q6_of_q3_left_down < -1.0, -1.0, part_of_highest_q6_of_q3_left_down),
                 )
+                part_of_lowest_q6_of_q3_left_down = (level_q6_of_q3_left_down + size_q1_for_q3)/swing_q6_of_q3_left_down
                 lowest_q6_of_q3_left_down = select(
-                    (-level_q6_of_q3_left_down - size_q1_for_q3)/swing_q6_of_q3_left_down > 1.0,
+                    -part_of_lowest_q6_of_q3_left_down > 1.0,
                     1.0,
-                    select(
-                        (-level_q6_of_q3_left_down - size_q1_for_q3)/swing_q6_of_q3_left_down < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_left_down - size_q1_for_q3)/swing_q6_of_q3_left_down,
-                    ),
+                    select(-part_of_lowest_q6_of_q3_left_down < -1.0, -1.0, -part_of_lowest_q6_of_q3_left_down),
                 )
                 highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down = elsewhere(
-                    swing_q6_of_q3_left_down > 1e-12*size_q1_for_q3,
+                    swing_q6_of_q3_left_down > size_q1_for_q3_times_rounding,
                     (highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down),
                     elsewhere_highest_q6_of_q3_left_down,
                     (),
@@ -2800,15 +2836,13 @@ class ArrayPrograms(Programs):
                 )
                 cos_q6_after_q6_of_q3_left_down = cos(moved_q6_of_q3_left_down)
                 sin_q6_after_q6_of_q3_left_down = sin(moved_q6_of_q3_left_down)
+                part_of_cost_q6_of_q3_left_down = sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down
+                part_of_cost_q6_of_q3_2_left_down = cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down
                 # what the motion changes of the pose
                 cost_q6_of_q3_left_down = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down
-                        )*(cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down)
-                        + (
-                            sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down
-                        )*(sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down)
+                        part_of_cost_q6_of_q3_2_left_down*part_of_cost_q6_of_q3_2_left_down
+                        + part_of_cost_q6_of_q3_left_down*part_of_cost_q6_of_q3_left_down
                     )
                     *radius_q6_left_down
                 )
@@ -2834,13 +2868,13 @@ class ArrayPrograms(Programs):
             cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
             sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
             cos_q6_left_down, sin_q6_left_down = elsewhere(
-                (radius_q6_left_down > 0.1) & (absolute(value_q6_of_q3_left_down) > 1.000000001*size_q1_for_q3),
+                (radius_q6_left_down > 0.1) & (size_of_value_q6_of_q3_left_down > part_of_cos_q6),
                 (cos_q6_left_down, sin_q6_left_down),
                 elsewhere_cos_q6_left_down,
                 (
-                    ahead_q1_left_down, cos_q5_left_down, cos_q6_before_q6_of_q3_left_down, r31, r32, r33,
-                    radius_q6_left_down, sin_q6_before_q6_of_q3_left_down, value_q6_of_q3_left_down,
-                    wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                    ahead_q1_left_down, cos_q5_left_down, cos_q6_before_q6_of_q3_left_down,
+                    q6_radius_of_q5_times_r33_left_down, radius_q6_left_down, sin_q6_before_q6_of_q3_left_down,
+                    value_q6_of_q3_left_down, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6_left_down, sin_q6_left_down)
@@ -2848,31 +2882,35 @@ class ArrayPrograms(Programs):
         cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
         sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
         cos_q6_left_down, sin_q6_left_down = elsewhere(
-            absolute(value_q6_of_q3_left_down) <= size_q1_for_q3,
+            size_of_value_q6_of_q3_left_down <= size_q1_for_q3,
             (cos_q6_left_down, sin_q6_left_down),
             elsewhere_cos_q6_left_down,
             (
-                ahead_q1_left_down, cos_q5_left_down, cos_q6_before_q6_of_q3_left_down, r31, r32, r33,
-                radius_q6_left_down, sin_q6_before_q6_of_q3_left_down, value_q6_of_q3_left_down, wrist_z,
+                ahead_q1_left_down, cos_q5_left_down, cos_q6_before_q6_of_q3_left_down,
+                q6_radius_of_q5_times_r33_left_down, r31, r32, radius_q6_left_down, sin_q6_before_q6_of_q3_left_down,
+                size_of_value_q6_of_q3_left_down, value_q6_of_q3_left_down, wrist_y_from_q1_fixed,
             ),
         )
         r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
-        r21_from_q1_before_q56_left_down = r21_from_q1_before_q6_left_down*cos_q5_left_down - r33*radius_q6_left_down
+        r21_from_q1_before_q56_left_down = (
+            r21_from_q1_before_q6_left_down*cos_q5_left_down - q6_radius_of_q5_times_r33_left_down
+        )
         # what the unknown links must span
         wrist_x_from_q1_left_down = ahead_q1_left_down - d5*r21_from_q1_before_q56_left_down
         r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
         # what the unknown links must span
-        wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
+        wrist_y_from_q1_left_down = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_left_down
         reach_left_down = sqrt(
             wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
         )
         # 1 - cosine, times the scale
-        one_less_cos_q3_left_down = (a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
+        one_less_cos_q3_left_down = (a2_plus_a3 + reach_left_down)*(a2_plus_a3 - reach_left_down)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_left_down = (a3 + reach_left_down - a2)*(a2 + reach_left_down - a3)
+        one_plus_cos_q3_left_down = (reach_left_down - a2_minus_a3)*(a2_minus_a3 + reach_left_down)
         # the square of sine times scale
         sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down
-        refusal_left_down = select(sine_square_q3_left_down >= -1e-12*scale_q3*scale_q3, 0, 3)  # q3: out of reach
+        # q3: out of reach
+        refusal_left_down = select(sine_square_q3_left_down >= -scale_q3_squared_times_rounding, 0, 3)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         # A1: its turn
@@ -2913,7 +2951,7 @@ class ArrayPrograms(Programs):
             arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
         )
         found = elsewhere(
-            reach_left_down > 1e-11*machine_scale,
+            reach_left_down > machine_scale_times_free_angle,
             (
                 direction_x_q2_left_up_down, direction_y_q2_left_up_down, direction_x_q2_left_down_down,
                 direction_y_q2_left_down_down,
@@ -2953,11 +2991,14 @@ class ArrayPrograms(Programs):
         r22_from_q1_left_up = r22*cos_q1_left_up - r12*sin_q1_left_up
         # q6: direction and distance of a point
         radius_q6_left_up = sqrt(r21_from_q1_left_up*r21_from_q1_left_up + r22_from_q1_left_up*r22_from_q1_left_up)
+        q6_radius_of_q5_times_r33_left_up = -r33*radius_q6_left_up
 
         def elsewhere_cos_q6_before_q6_of_q3_left_up(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_left_up = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = sin(free_a6)
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = -sin(free_a6)
+            cos_q6_before_q6_of_q3_left_up = cos_of_free_a6  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_up = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up)
 
         cos_q6_before_q6_of_q3_left_up = r21_from_q1_left_up/radius_q6_left_up  # its reference where it is free
@@ -2972,40 +3013,45 @@ class ArrayPrograms(Programs):
             r31*cos_q6_before_q6_of_q3_left_up - r32*sin_q6_before_q6_of_q3_left_up
         )
         r21_from_q1_before_q56_before_q6_of_q3_left_up = (
-            r21_from_q1_before_q6_before_q6_of_q3_left_up*cos_q5_left_up + r33*radius_q6_left_up
+            r21_from_q1_before_q6_before_q6_of_q3_left_up*cos_q5_left_up - q6_radius_of_q5_times_r33_left_up
         )
         wrist_x_from_q1_before_q6_of_q3_left_up = ahead_q1_left_up - d5*r21_from_q1_before_q56_before_q6_of_q3_left_up
         r22_from_q1_before_q6_before_q6_of_q3_left_up = (
             r32*cos_q6_before_q6_of_q3_left_up + r31*sin_q6_before_q6_of_q3_left_up
         )
-        wrist_y_from_q1_before_q6_of_q3_left_up = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3_left_up - d1
+        wrist_y_from_q1_before_q6_of_q3_left_up = (
+            wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_left_up
+        )
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_left_up = (
             wrist_x_from_q1_before_q6_of_q3_left_up*wrist_x_from_q1_before_q6_of_q3_left_up
-            + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up - a2*a2 - a3*a3
+            + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up
+            - a2_squared_plus_a3_squared
         )
+        size_of_value_q6_of_q3_left_up = absolute(value_q6_of_q3_left_up)
 
         def elsewhere_cos_q6_left_up(
-            ahead_q1_left_up: Real, cos_q5_left_up: Real, cos_q6_before_q6_of_q3_left_up: Real, r31: Real, r32: Real,
-            r33: Real, radius_q6_left_up: Real, sin_q6_before_q6_of_q3_left_up: Real, value_q6_of_q3_left_up: Real,
-            wrist_z: Real,
+            ahead_q1_left_up: Real, cos_q5_left_up: Real, cos_q6_before_q6_of_q3_left_up: Real,
+            q6_radius_of_q5_times_r33_left_up: Real, r31: Real, r32: Real, radius_q6_left_up: Real,
+            sin_q6_before_q6_of_q3_left_up: Real, size_of_value_q6_of_q3_left_up: Real, value_q6_of_q3_left_up: Real,
+            wrist_y_from_q1_fixed: Real,
         ) -> Reals:
-            wrist_y_from_q1_fixed = wrist_z - d1
-            wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_along = d5*r32
 
             def elsewhere_cos_q6_left_up(
-                ahead_q1_left_up: Real, cos_q5_left_up: Real, cos_q6_before_q6_of_q3_left_up: Real, r31: Real, r32: Real,
-                r33: Real, radius_q6_left_up: Real, sin_q6_before_q6_of_q3_left_up: Real, value_q6_of_q3_left_up: Real,
-                wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
+                ahead_q1_left_up: Real, cos_q5_left_up: Real, cos_q6_before_q6_of_q3_left_up: Real,
+                q6_radius_of_q5_times_r33_left_up: Real, radius_q6_left_up: Real, sin_q6_before_q6_of_q3_left_up: Real,
+                value_q6_of_q3_left_up: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+                wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_left_up = ahead_q1_left_up - d5*r33*radius_q6_left_up
-                wrist_x_from_q1_along_left_up = -d5*r31*cos_q5_left_up
+                wrist_x_from_q1_fixed_left_up = ahead_q1_left_up + d5*q6_radius_of_q5_times_r33_left_up
+                wrist_x_from_q1_along_left_up = -wrist_y_from_q1_across*cos_q5_left_up
                 along_q6_of_q3_left_up = (
                     2.0*wrist_x_from_q1_along_left_up*wrist_x_from_q1_fixed_left_up
                     + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
-                wrist_x_from_q1_across_left_up = d5*r32*cos_q5_left_up
+                wrist_x_from_q1_across_left_up = wrist_y_from_q1_along*cos_q5_left_up
                 across_q6_of_q3_left_up = (
                     2.0*wrist_x_from_q1_across_left_up*wrist_x_from_q1_fixed_left_up
                     + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
@@ -3023,26 +3069,21 @@ class ArrayPrograms(Programs):
                     value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
                     - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
                 )
+                part_of_highest_q6_of_q3_left_up = (size_q1_for_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up
                 # the arc: cosines from its centre
                 highest_q6_of_q3_left_up = select(
-                    (size_q1_for_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up > 1.0,
+                    part_of_highest_q6_of_q3_left_up > 1.0,
                     1.0,
-                    select(
-                        (size_q1_for_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up < -1.0, -1.0,
-                        (size_q1_for_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up,
-                    ),
+                    select(part_of_highest_q6_of_q3_left_up < -1.0, -1.0, part_of_highest_q6_of_q3_left_up),
                 )
+                part_of_lowest_q6_of_q3_left_up = (level_q6_of_q3_left_up + size_q1_for_q3)/swing_q6_of_q3_left_up
                 lowest_q6_of_q3_left_up = select(
-                    (-level_q6_of_q3_left_up - size_q1_for_q3)/swing_q6_of_q3_left_up > 1.0,
+                    -part_of_lowest_q6_of_q3_left_up > 1.0,
                     1.0,
-                    select(
-                        (-level_q6_of_q3_left_up - size_q1_for_q3)/swing_q6_of_q3_left_up < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_left_up - size_q1_for_q3)/swing_q6_of_q3_left_up,
-                    ),
+                    select(-part_of_lowest_q6_of_q3_left_up < -1.0, -1.0, -part_of_lowest_q6_of_q3_left_up),
                 )
                 highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up = elsewhere(
-                    swing_q6_of_q3_left_up > 1e-12*size_q1_for_q3,
+                    swing_q6_of_q3_left_up > size_q1_for_q3_times_rounding,
                     (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up),
                     elsewhere_highest_q6_of_q3_left_up,
                     (),
@@ -3072,15 +3113,13 @@ class ArrayPrograms(Programs):
                 )
                 cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
                 sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
+                part_of_cost_q6_of_q3_left_up = sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
+                part_of_cost_q6_of_q3_2_left_up = cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
                 # what the motion changes of the pose
                 cost_q6_of_q3_left_up = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
-                        )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
-                        + (
-                            sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
-                        )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
+                        part_of_cost_q6_of_q3_2_left_up*part_of_cost_q6_of_q3_2_left_up
+                        + part_of_cost_q6_of_q3_left_up*part_of_cost_q6_of_q3_left_up
                     )
                     *radius_q6_left_up
                 )
@@ -3106,13 +3145,13 @@ class ArrayPrograms(Programs):
             cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
             sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
             cos_q6_left_up, sin_q6_left_up = elsewhere(
-                (radius_q6_left_up > 0.1) & (absolute(value_q6_of_q3_left_up) > 1.000000001*size_q1_for_q3),
+                (radius_q6_left_up > 0.1) & (size_of_value_q6_of_q3_left_up > part_of_cos_q6),
                 (cos_q6_left_up, sin_q6_left_up),
                 elsewhere_cos_q6_left_up,
                 (
-                    ahead_q1_left_up, cos_q5_left_up, cos_q6_before_q6_of_q3_left_up, r31, r32, r33, radius_q6_left_up,
-                    sin_q6_before_q6_of_q3_left_up, value_q6_of_q3_left_up, wrist_y_from_q1_across, wrist_y_from_q1_along,
-                    wrist_y_from_q1_fixed,
+                    ahead_q1_left_up, cos_q5_left_up, cos_q6_before_q6_of_q3_left_up, q6_radius_of_q5_times_r33_left_up,
+                    radius_q6_left_up, sin_q6_before_q6_of_q3_left_up, value_q6_of_q3_left_up, wrist_y_from_q1_across,
+                    wrist_y_from_q1_along, wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6_left_up, sin_q6_left_up)
@@ -3120,27 +3159,33 @@ class ArrayPrograms(Programs):
         cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
         sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
         cos_q6_left_up, sin_q6_left_up = elsewhere(
-            absolute(value_q6_of_q3_left_up) <= size_q1_for_q3,
+            size_of_value_q6_of_q3_left_up <= size_q1_for_q3,
             (cos_q6_left_up, sin_q6_left_up),
             elsewhere_cos_q6_left_up,
             (
-                ahead_q1_left_up, cos_q5_left_up, cos_q6_before_q6_of_q3_left_up, r31, r32, r33, radius_q6_left_up,
-                sin_q6_before_q6_of_q3_left_up, value_q6_of_q3_left_up, wrist_z,
+                ahead_q1_left_up, cos_q5_left_up, cos_q6_before_q6_of_q3_left_up, q6_radius_of_q5_times_r33_left_up,
+                r31, r32, radius_q6_left_up, sin_q6_before_q6_of_q3_left_up, size_of_value_q6_of_q3_left_up,
+                value_q6_of_q3_left_up, wrist_y_from_q1_fixed,
             ),
         )
         r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
-        r21_from_q1_before_q56_left_up = r21_from_q1_before_q6_left_up*cos_q5_left_up + r33*radius_q6_left_up
+        r21_from_q1_before_q56_left_up = (
+            r21_from_q1_before_q6_left_up*cos_q5_left_up - q6_radius_of_q5_times_r33_left_up
+        )
         # what the unknown links must span
         wrist_x_from_q1_left_up = ahead_q1_left_up - d5*r21_from_q1_before_q56_left_up
         r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
-        wrist_y_from_q1_left_up = wrist_z + d5*r22_from_q1_before_q6_left_up - d1  # what the unknown links must span
+        # what the unknown links must span
+        wrist_y_from_q1_left_up = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_left_up
         reach_left_up = sqrt(
             wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
         )
-        one_less_cos_q3_left_up = (a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)  # 1 - cosine, times the scale
-        one_plus_cos_q3_left_up = (a3 + reach_left_up - a2)*(a2 + reach_left_up - a3)  # 1 + cosine, times the scale
+        # 1 - cosine, times the scale
+        one_less_cos_q3_left_up = (a2_plus_a3 + reach_left_up)*(a2_plus_a3 - reach_left_up)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up)
         sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up  # the square of sine times scale
-        refusal_left_up = select(sine_square_q3_left_up >= -1e-12*scale_q3*scale_q3, 0, 3)  # q3: out of reach
+        refusal_left_up = select(sine_square_q3_left_up >= -scale_q3_squared_times_rounding, 0, 3)  # q3: out of reach
         axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)  # A1: its turn
         # twice the scale, with the rounding of its parts
         both_q3_left_up = one_less_cos_q3_left_up + one_plus_cos_q3_left_up
@@ -3178,7 +3223,7 @@ class ArrayPrograms(Programs):
             arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
         )
         found = elsewhere(
-            reach_left_up > 1e-11*machine_scale,
+            reach_left_up > machine_scale_times_free_angle,
             (
                 direction_x_q2_left_up_up, direction_y_q2_left_up_up, direction_x_q2_left_down_up,
                 direction_y_q2_left_down_up,
@@ -3226,11 +3271,14 @@ class ArrayPrograms(Programs):
         radius_q6_right_down = sqrt(
             r21_from_q1_right_down*r21_from_q1_right_down + r22_from_q1_right_down*r22_from_q1_right_down
         )
+        q6_radius_of_q5_times_r33_right_down = r33*radius_q6_right_down
 
         def elsewhere_cos_q6_before_q6_of_q3_right_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_right_down = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = sin(free_a6)
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = -sin(free_a6)
+            cos_q6_before_q6_of_q3_right_down = cos_of_free_a6  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_down = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down)
 
         # its reference where it is free
@@ -3246,7 +3294,7 @@ class ArrayPrograms(Programs):
             r31*cos_q6_before_q6_of_q3_right_down - r32*sin_q6_before_q6_of_q3_right_down
         )
         r21_from_q1_before_q56_before_q6_of_q3_right_down = (
-            r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right_down - r33*radius_q6_right_down
+            r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right_down - q6_radius_of_q5_times_r33_right_down
         )
         wrist_x_from_q1_before_q6_of_q3_right_down = (
             ahead_q1_right_down - d5*r21_from_q1_before_q56_before_q6_of_q3_right_down
@@ -3255,36 +3303,38 @@ class ArrayPrograms(Programs):
             r32*cos_q6_before_q6_of_q3_right_down + r31*sin_q6_before_q6_of_q3_right_down
         )
         wrist_y_from_q1_before_q6_of_q3_right_down = (
-            wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3_right_down - d1
+            wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_right_down
         )
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_right_down = (
             wrist_x_from_q1_before_q6_of_q3_right_down*wrist_x_from_q1_before_q6_of_q3_right_down
-            + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down - a2*a2 - a3*a3
+            + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down
+            - a2_squared_plus_a3_squared
         )
+        size_of_value_q6_of_q3_right_down = absolute(value_q6_of_q3_right_down)
 
         def elsewhere_cos_q6_right_down(
-            ahead_q1_right_down: Real, cos_q5_right_down: Real, cos_q6_before_q6_of_q3_right_down: Real, r31: Real,
-            r32: Real, r33: Real, radius_q6_right_down: Real, sin_q6_before_q6_of_q3_right_down: Real,
-            value_q6_of_q3_right_down: Real, wrist_z: Real,
+            ahead_q1_right_down: Real, cos_q5_right_down: Real, cos_q6_before_q6_of_q3_right_down: Real,
+            q6_radius_of_q5_times_r33_right_down: Real, r31: Real, r32: Real, radius_q6_right_down: Real,
+            sin_q6_before_q6_of_q3_right_down: Real, size_of_value_q6_of_q3_right_down: Real,
+            value_q6_of_q3_right_down: Real, wrist_y_from_q1_fixed: Real,
         ) -> Reals:
-            wrist_y_from_q1_fixed = wrist_z - d1
-            wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_along = d5*r32
 
             def elsewhere_cos_q6_right_down(
-                ahead_q1_right_down: Real, cos_q5_right_down: Real, cos_q6_before_q6_of_q3_right_down: Real, r31: Real,
-                r32: Real, r33: Real, radius_q6_right_down: Real, sin_q6_before_q6_of_q3_right_down: Real,
-                value_q6_of_q3_right_down: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
-                wrist_y_from_q1_fixed: Real,
+                ahead_q1_right_down: Real, cos_q5_right_down: Real, cos_q6_before_q6_of_q3_right_down: Real,
+                q6_radius_of_q5_times_r33_right_down: Real, radius_q6_right_down: Real,
+                sin_q6_before_q6_of_q3_right_down: Real, value_q6_of_q3_right_down: Real, wrist_y_from_q1_across: Real,
+                wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_right_down = ahead_q1_right_down + d5*r33*radius_q6_right_down
-                wrist_x_from_q1_along_right_down = -d5*r31*cos_q5_right_down
+                wrist_x_from_q1_fixed_right_down = ahead_q1_right_down + d5*q6_radius_of_q5_times_r33_right_down
+                wrist_x_from_q1_along_right_down = -wrist_y_from_q1_across*cos_q5_right_down
                 along_q6_of_q3_right_down = (
                     2.0*wrist_x_from_q1_along_right_down*wrist_x_from_q1_fixed_right_down
                     + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
-                wrist_x_from_q1_across_right_down = d5*r32*cos_q5_right_down
+                wrist_x_from_q1_across_right_down = wrist_y_from_q1_along*cos_q5_right_down
                 across_q6_of_q3_right_down = (
                     2.0*wrist_x_from_q1_across_right_down*wrist_x_from_q1_fixed_right_down
                     + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
@@ -3303,26 +3353,21 @@ class ArrayPrograms(Programs):
                     value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
                     - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
                 )
+                part_of_highest_q6_of_q3_right_down = (size_q1_for_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down
                 # the arc: cosines from its centre
                 highest_q6_of_q3_right_down = select(
-                    (size_q1_for_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down > 1.0,
+                    part_of_highest_q6_of_q3_right_down > 1.0,
                     1.0,
-                    select(
-                        (size_q1_for_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down < -1.0, -1.0,
-                        (size_q1_for_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down,
-                    ),
+                    select(part_of_highest_q6_of_q3_right_down < -1.0, -1.0, part_of_highest_q6_of_q3_right_down),
                 )
+                part_of_lowest_q6_of_q3_right_down = (level_q6_of_q3_right_down + size_q1_for_q3)/swing_q6_of_q3_right_down
                 lowest_q6_of_q3_right_down = select(
-                    (-level_q6_of_q3_right_down - size_q1_for_q3)/swing_q6_of_q3_right_down > 1.0,
+                    -part_of_lowest_q6_of_q3_right_down > 1.0,
                     1.0,
-                    select(
-                        (-level_q6_of_q3_right_down - size_q1_for_q3)/swing_q6_of_q3_right_down < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_right_down - size_q1_for_q3)/swing_q6_of_q3_right_down,
-                    ),
+                    select(-part_of_lowest_q6_of_q3_right_down < -1.0, -1.0, -part_of_lowest_q6_of_q3_right_down),
                 )
                 highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down = elsewhere(
-                    swing_q6_of_q3_right_down > 1e-12*size_q1_for_q3,
+                    swing_q6_of_q3_right_down > size_q1_for_q3_times_rounding,
                     (highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down),
                     elsewhere_highest_q6_of_q3_right_down,
                     (),
@@ -3355,15 +3400,13 @@ class ArrayPrograms(Programs):
                 )
                 cos_q6_after_q6_of_q3_right_down = cos(moved_q6_of_q3_right_down)
                 sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down)
+                part_of_cost_q6_of_q3_right_down = sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
+                part_of_cost_q6_of_q3_2_right_down = cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
                 # what the motion changes of the pose
                 cost_q6_of_q3_right_down = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
-                        )*(cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down)
-                        + (
-                            sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
-                        )*(sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down)
+                        part_of_cost_q6_of_q3_2_right_down*part_of_cost_q6_of_q3_2_right_down
+                        + part_of_cost_q6_of_q3_right_down*part_of_cost_q6_of_q3_right_down
                     )
                     *radius_q6_right_down
                 )
@@ -3389,13 +3432,13 @@ class ArrayPrograms(Programs):
             cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
             sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
             cos_q6_right_down, sin_q6_right_down = elsewhere(
-                (radius_q6_right_down > 0.1) & (absolute(value_q6_of_q3_right_down) > 1.000000001*size_q1_for_q3),
+                (radius_q6_right_down > 0.1) & (size_of_value_q6_of_q3_right_down > part_of_cos_q6),
                 (cos_q6_right_down, sin_q6_right_down),
                 elsewhere_cos_q6_right_down,
                 (
-                    ahead_q1_right_down, cos_q5_right_down, cos_q6_before_q6_of_q3_right_down, r31, r32, r33,
-                    radius_q6_right_down, sin_q6_before_q6_of_q3_right_down, value_q6_of_q3_right_down,
-                    wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                    ahead_q1_right_down, cos_q5_right_down, cos_q6_before_q6_of_q3_right_down,
+                    q6_radius_of_q5_times_r33_right_down, radius_q6_right_down, sin_q6_before_q6_of_q3_right_down,
+                    value_q6_of_q3_right_down, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6_right_down, sin_q6_right_down)
@@ -3403,34 +3446,37 @@ class ArrayPrograms(Programs):
         cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
         sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
         cos_q6_right_down, sin_q6_right_down = elsewhere(
-            absolute(value_q6_of_q3_right_down) <= size_q1_for_q3,
+            size_of_value_q6_of_q3_right_down <= size_q1_for_q3,
             (cos_q6_right_down, sin_q6_right_down),
             elsewhere_cos_q6_right_down,
             (
-                ahead_q1_right_down, cos_q5_right_down, cos_q6_before_q6_of_q3_right_down, r31, r32, r33,
-                radius_q6_right_down, sin_q6_before_q6_of_q3_right_down, value_q6_of_q3_right_down, wrist_z,
+                ahead_q1_right_down, cos_q5_right_down, cos_q6_before_q6_of_q3_right_down,
+                q6_radius_of_q5_times_r33_right_down, r31, r32, radius_q6_right_down,
+                sin_q6_before_q6_of_q3_right_down, size_of_value_q6_of_q3_right_down, value_q6_of_q3_right_down,
+                wrist_y_from_q1_fixed,
             ),
         )
         r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
         r21_from_q1_before_q56_right_down = (
-            r21_from_q1_before_q6_right_down*cos_q5_right_down - r33*radius_q6_right_down
+            r21_from_q1_before_q6_right_down*cos_q5_right_down - q6_radius_of_q5_times_r33_right_down
         )
         # what the unknown links must span
         wrist_x_from_q1_right_down = ahead_q1_right_down - d5*r21_from_q1_before_q56_right_down
         r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
         # what the unknown links must span
-        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
+        wrist_y_from_q1_right_down = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_right_down
         reach_right_down = sqrt(
             wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
             + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
         )
         # 1 - cosine, times the scale
-        one_less_cos_q3_right_down = (a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
+        one_less_cos_q3_right_down = (a2_plus_a3 + reach_right_down)*(a2_plus_a3 - reach_right_down)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_right_down = (a3 + reach_right_down - a2)*(a2 + reach_right_down - a3)
+        one_plus_cos_q3_right_down = (reach_right_down - a2_minus_a3)*(a2_minus_a3 + reach_right_down)
         # the square of sine times scale
         sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down
-        refusal_right_down = select(sine_square_q3_right_down >= -1e-12*scale_q3*scale_q3, 0, 3)  # q3: out of reach
+        # q3: out of reach
+        refusal_right_down = select(sine_square_q3_right_down >= -scale_q3_squared_times_rounding, 0, 3)
         # A1: its turn
         axis_a1_right_down = nearest_period(offset_a1 + degrees(sin_q1_right_down, cos_q1_right_down), near_a1)
         # twice the scale, with the rounding of its parts
@@ -3473,7 +3519,7 @@ class ArrayPrograms(Programs):
             + arm_along_q2_right_down*wrist_y_from_q1_right_down
         )
         found = elsewhere(
-            reach_right_down > 1e-11*machine_scale,
+            reach_right_down > machine_scale_times_free_angle,
             (
                 direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
                 direction_y_q2_right_down_down,
@@ -3506,11 +3552,14 @@ class ArrayPrograms(Programs):
         radius_q6_right_up = sqrt(
             r21_from_q1_right_up*r21_from_q1_right_up + r22_from_q1_right_up*r22_from_q1_right_up
         )
+        q6_radius_of_q5_times_r33_right_up = -r33*radius_q6_right_up
 
         def elsewhere_cos_q6_before_q6_of_q3_right_up(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_right_up = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = sin(free_a6)
+            cos_of_free_a6 = cos(free_a6)
+            sin_of_free_a6 = -sin(free_a6)
+            cos_q6_before_q6_of_q3_right_up = cos_of_free_a6  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_up = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up)
 
         cos_q6_before_q6_of_q3_right_up = r21_from_q1_right_up/radius_q6_right_up  # its reference where it is free
@@ -3525,7 +3574,7 @@ class ArrayPrograms(Programs):
             r31*cos_q6_before_q6_of_q3_right_up - r32*sin_q6_before_q6_of_q3_right_up
         )
         r21_from_q1_before_q56_before_q6_of_q3_right_up = (
-            r21_from_q1_before_q6_before_q6_of_q3_right_up*cos_q5_right_up + r33*radius_q6_right_up
+            r21_from_q1_before_q6_before_q6_of_q3_right_up*cos_q5_right_up - q6_radius_of_q5_times_r33_right_up
         )
         wrist_x_from_q1_before_q6_of_q3_right_up = (
             ahead_q1_right_up - d5*r21_from_q1_before_q56_before_q6_of_q3_right_up
@@ -3533,35 +3582,39 @@ class ArrayPrograms(Programs):
         r22_from_q1_before_q6_before_q6_of_q3_right_up = (
             r32*cos_q6_before_q6_of_q3_right_up + r31*sin_q6_before_q6_of_q3_right_up
         )
-        wrist_y_from_q1_before_q6_of_q3_right_up = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3_right_up - d1
+        wrist_y_from_q1_before_q6_of_q3_right_up = (
+            wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_right_up
+        )
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_right_up = (
             wrist_x_from_q1_before_q6_of_q3_right_up*wrist_x_from_q1_before_q6_of_q3_right_up
-            + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up - a2*a2 - a3*a3
+            + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up
+            - a2_squared_plus_a3_squared
         )
+        size_of_value_q6_of_q3_right_up = absolute(value_q6_of_q3_right_up)
 
         def elsewhere_cos_q6_right_up(
-            ahead_q1_right_up: Real, cos_q5_right_up: Real, cos_q6_before_q6_of_q3_right_up: Real, r31: Real,
-            r32: Real, r33: Real, radius_q6_right_up: Real, sin_q6_before_q6_of_q3_right_up: Real,
-            value_q6_of_q3_right_up: Real, wrist_z: Real,
+            ahead_q1_right_up: Real, cos_q5_right_up: Real, cos_q6_before_q6_of_q3_right_up: Real,
+            q6_radius_of_q5_times_r33_right_up: Real, r31: Real, r32: Real, radius_q6_right_up: Real,
+            sin_q6_before_q6_of_q3_right_up: Real, size_of_value_q6_of_q3_right_up: Real,
+            value_q6_of_q3_right_up: Real, wrist_y_from_q1_fixed: Real,
         ) -> Reals:
-            wrist_y_from_q1_fixed = wrist_z - d1
-            wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_along = d5*r32
 
             def elsewhere_cos_q6_right_up(
-                ahead_q1_right_up: Real, cos_q5_right_up: Real, cos_q6_before_q6_of_q3_right_up: Real, r31: Real,
-                r32: Real, r33: Real, radius_q6_right_up: Real, sin_q6_before_q6_of_q3_right_up: Real,
+                ahead_q1_right_up: Real, cos_q5_right_up: Real, cos_q6_before_q6_of_q3_right_up: Real,
+                q6_radius_of_q5_times_r33_right_up: Real, radius_q6_right_up: Real, sin_q6_before_q6_of_q3_right_up: Real,
                 value_q6_of_q3_right_up: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
                 wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_right_up = ahead_q1_right_up - d5*r33*radius_q6_right_up
-                wrist_x_from_q1_along_right_up = -d5*r31*cos_q5_right_up
+                wrist_x_from_q1_fixed_right_up = ahead_q1_right_up + d5*q6_radius_of_q5_times_r33_right_up
+                wrist_x_from_q1_along_right_up = -wrist_y_from_q1_across*cos_q5_right_up
                 along_q6_of_q3_right_up = (
                     2.0*wrist_x_from_q1_along_right_up*wrist_x_from_q1_fixed_right_up
                     + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
-                wrist_x_from_q1_across_right_up = d5*r32*cos_q5_right_up
+                wrist_x_from_q1_across_right_up = wrist_y_from_q1_along*cos_q5_right_up
                 across_q6_of_q3_right_up = (
                     2.0*wrist_x_from_q1_across_right_up*wrist_x_from_q1_fixed_right_up
                     + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
@@ -3579,26 +3632,21 @@ class ArrayPrograms(Programs):
                     value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
                     - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
                 )
+                part_of_highest_q6_of_q3_right_up = (size_q1_for_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up
                 # the arc: cosines from its centre
                 highest_q6_of_q3_right_up = select(
-                    (size_q1_for_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up > 1.0,
+                    part_of_highest_q6_of_q3_right_up > 1.0,
                     1.0,
-                    select(
-                        (size_q1_for_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up < -1.0, -1.0,
-                        (size_q1_for_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up,
-                    ),
+                    select(part_of_highest_q6_of_q3_right_up < -1.0, -1.0, part_of_highest_q6_of_q3_right_up),
                 )
+                part_of_lowest_q6_of_q3_right_up = (level_q6_of_q3_right_up + size_q1_for_q3)/swing_q6_of_q3_right_up
                 lowest_q6_of_q3_right_up = select(
-                    (-level_q6_of_q3_right_up - size_q1_for_q3)/swing_q6_of_q3_right_up > 1.0,
+                    -part_of_lowest_q6_of_q3_right_up > 1.0,
                     1.0,
-                    select(
-                        (-level_q6_of_q3_right_up - size_q1_for_q3)/swing_q6_of_q3_right_up < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_right_up - size_q1_for_q3)/swing_q6_of_q3_right_up,
-                    ),
+                    select(-part_of_lowest_q6_of_q3_right_up < -1.0, -1.0, -part_of_lowest_q6_of_q3_right_up),
                 )
                 highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up = elsewhere(
-                    swing_q6_of_q3_right_up > 1e-12*size_q1_for_q3,
+                    swing_q6_of_q3_right_up > size_q1_for_q3_times_rounding,
                     (highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up),
                     elsewhere_highest_q6_of_q3_right_up,
                     (),
@@ -3628,15 +3676,13 @@ class ArrayPrograms(Programs):
                 )
                 cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up)
                 sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
+                part_of_cost_q6_of_q3_right_up = sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
+                part_of_cost_q6_of_q3_2_right_up = cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
                 # what the motion changes of the pose
                 cost_q6_of_q3_right_up = (
                     sqrt(
-                        (
-                            cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
-                        )*(cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up)
-                        + (
-                            sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
-                        )*(sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up)
+                        part_of_cost_q6_of_q3_2_right_up*part_of_cost_q6_of_q3_2_right_up
+                        + part_of_cost_q6_of_q3_right_up*part_of_cost_q6_of_q3_right_up
                     )
                     *radius_q6_right_up
                 )
@@ -3662,13 +3708,13 @@ class ArrayPrograms(Programs):
             cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
             sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
             cos_q6_right_up, sin_q6_right_up = elsewhere(
-                (radius_q6_right_up > 0.1) & (absolute(value_q6_of_q3_right_up) > 1.000000001*size_q1_for_q3),
+                (radius_q6_right_up > 0.1) & (size_of_value_q6_of_q3_right_up > part_of_cos_q6),
                 (cos_q6_right_up, sin_q6_right_up),
                 elsewhere_cos_q6_right_up,
                 (
-                    ahead_q1_right_up, cos_q5_right_up, cos_q6_before_q6_of_q3_right_up, r31, r32, r33,
-                    radius_q6_right_up, sin_q6_before_q6_of_q3_right_up, value_q6_of_q3_right_up, wrist_y_from_q1_across,
-                    wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                    ahead_q1_right_up, cos_q5_right_up, cos_q6_before_q6_of_q3_right_up,
+                    q6_radius_of_q5_times_r33_right_up, radius_q6_right_up, sin_q6_before_q6_of_q3_right_up,
+                    value_q6_of_q3_right_up, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6_right_up, sin_q6_right_up)
@@ -3676,30 +3722,34 @@ class ArrayPrograms(Programs):
         cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
         sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
         cos_q6_right_up, sin_q6_right_up = elsewhere(
-            absolute(value_q6_of_q3_right_up) <= size_q1_for_q3,
+            size_of_value_q6_of_q3_right_up <= size_q1_for_q3,
             (cos_q6_right_up, sin_q6_right_up),
             elsewhere_cos_q6_right_up,
             (
-                ahead_q1_right_up, cos_q5_right_up, cos_q6_before_q6_of_q3_right_up, r31, r32, r33,
-                radius_q6_right_up, sin_q6_before_q6_of_q3_right_up, value_q6_of_q3_right_up, wrist_z,
+                ahead_q1_right_up, cos_q5_right_up, cos_q6_before_q6_of_q3_right_up,
+                q6_radius_of_q5_times_r33_right_up, r31, r32, radius_q6_right_up, sin_q6_before_q6_of_q3_right_up,
+                size_of_value_q6_of_q3_right_up, value_q6_of_q3_right_up, wrist_y_from_q1_fixed,
             ),
         )
         r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
-        r21_from_q1_before_q56_right_up = r21_from_q1_before_q6_right_up*cos_q5_right_up + r33*radius_q6_right_up
+        r21_from_q1_before_q56_right_up = (
+            r21_from_q1_before_q6_right_up*cos_q5_right_up - q6_radius_of_q5_times_r33_right_up
+        )
         # what the unknown links must span
         wrist_x_from_q1_right_up = ahead_q1_right_up - d5*r21_from_q1_before_q56_right_up
         r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
         # what the unknown links must span
-        wrist_y_from_q1_right_up = wrist_z + d5*r22_from_q1_before_q6_right_up - d1
+        wrist_y_from_q1_right_up = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_right_up
         reach_right_up = sqrt(
             wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
         )
         # 1 - cosine, times the scale
-        one_less_cos_q3_right_up = (a2 + a3 + reach_right_up)*(a2 + a3 - reach_right_up)
+        one_less_cos_q3_right_up = (a2_plus_a3 + reach_right_up)*(a2_plus_a3 - reach_right_up)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_right_up = (a3 + reach_right_up - a2)*(a2 + reach_right_up - a3)
+        one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up)
         sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up  # the square of sine times scale
-        refusal_right_up = select(sine_square_q3_right_up >= -1e-12*scale_q3*scale_q3, 0, 3)  # q3: out of reach
+        # q3: out of reach
+        refusal_right_up = select(sine_square_q3_right_up >= -scale_q3_squared_times_rounding, 0, 3)
         # A1: its turn
         axis_a1_right_up = nearest_period(offset_a1 + degrees(sin_q1_right_up, cos_q1_right_up), near_a1)
         # twice the scale, with the rounding of its parts
@@ -3738,7 +3788,7 @@ class ArrayPrograms(Programs):
             arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
         )
         found = elsewhere(
-            reach_right_up > 1e-11*machine_scale,
+            reach_right_up > machine_scale_times_free_angle,
             (
                 direction_x_q2_right_up_up, direction_y_q2_right_up_up, direction_x_q2_right_down_up,
                 direction_y_q2_right_down_up,

@@ -63,36 +63,39 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        a1 = axis_a1 - offset_a1
-        a4 = DEGREE*(axis_a4 - offset_a4)
-        sin_a4 = sin(a4)
         a5 = DEGREE*(axis_a5 - offset_a5)
         cos_a5 = cos(a5)
+        a4 = DEGREE*(axis_a4 - offset_a4)
+        sin_a4 = sin(a4)
         r13_at_a5 = cos_a5*sin_a4
-        cos_a4 = cos(a4)
         sin_a5 = sin(a5)
+        cos_a4 = cos(a4)
         r12_at_a5 = sin_a4*sin_a5
         a6 = DEGREE*(axis_a6 - offset_a6)
         sin_a6 = sin(a6)
         cos_a6 = cos(a6)
         r11_at_a6 = cos_a4*cos_a6 + r12_at_a5*sin_a6
         r12_at_a6 = r12_at_a5*cos_a6 - cos_a4*sin_a6
+        a1 = axis_a1 - offset_a1
         x = a1 + flange_x*r11_at_a6 + flange_y*r12_at_a6 + flange_z*r13_at_a5
-        a2 = axis_a2 - offset_a2
         r21_at_a6 = cos_a5*sin_a6
         r22_at_a6 = cos_a5*cos_a6
+        a2 = axis_a2 - offset_a2
         y = a2 + flange_x*r21_at_a6 + flange_y*r22_at_a6 - flange_z*sin_a5
-        a3 = axis_a3 - offset_a3
         r33_at_a5 = cos_a4*cos_a5
         r32_at_a5 = cos_a4*sin_a5
         r31_at_a6 = r32_at_a5*sin_a6 - cos_a6*sin_a4
         r32_at_a6 = r32_at_a5*cos_a6 + sin_a4*sin_a6
+        a3 = axis_a3 - offset_a3
         z = a3 + flange_x*r31_at_a6 + flange_y*r32_at_a6 + flange_z*r33_at_a5
-        r23 = -sin_a5
         return (
             (
                 (x, y, z),
-                ((r11_at_a6, r12_at_a6, r13_at_a5), (r21_at_a6, r22_at_a6, r23), (r31_at_a6, r32_at_a6, r33_at_a5)),
+                (
+                    (r11_at_a6, r12_at_a6, r13_at_a5),
+                    (r21_at_a6, r22_at_a6, -sin_a5),
+                    (r31_at_a6, r32_at_a6, r33_at_a5),
+                ),
                 (cos_a5,),
             ),
             status,
@@ -160,10 +163,9 @@ class ArrayPrograms(Programs):
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         axis_a4 = nearest_period(offset_a4 + degrees(direction_y_a4, direction_x_a4), near_a4)  # A4: its turn
         a4_radius_of_a5 = sigma_wrist*radius_a4
-        sin_a5 = -r23
         open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
         near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        axis_a5 = nearest_period(offset_a5 + degrees(sin_a5, a4_radius_of_a5), near_a5)  # A5: its turn
+        axis_a5 = nearest_period(offset_a5 + degrees(-r23, a4_radius_of_a5), near_a5)  # A5: its turn
         scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
         direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
         open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open

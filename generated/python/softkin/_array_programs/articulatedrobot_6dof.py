@@ -71,46 +71,49 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
+        q5 = DEGREE*(axis_a5 - offset_a5)
+        sin_q5 = sin(q5)
         q1 = DEGREE*(axis_a1 - offset_a1)
         cos_q1 = cos(q1)
         q2 = DEGREE*(axis_a2 - offset_a2)
         q3 = DEGREE*(axis_a3 - offset_a3)
-        cos_q23 = cos(q2 + q3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
         r12_at_q23 = -cos_q1*cos_q23
         sin_q1 = sin(q1)
-        x_at_q2 = a1*cos_q1
-        sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r11_at_q2
-        sin_q23 = sin(q2 + q3)
+        sin_q23 = sin(q2_plus_q3)
         r11_at_q23 = -cos_q1*sin_q23
-        x_at_q4 = x_at_q3 + a3*r11_at_q23 + d3*sin_q1
-        x_at_q5 = x_at_q4 - d4*r12_at_q23
         q4 = DEGREE*(axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
         r11_at_q4 = r11_at_q23*cos_q4 + sin_q1*sin_q4
-        q5 = DEGREE*(axis_a5 - offset_a5)
-        sin_q5 = sin(q5)
         cos_q5 = cos(q5)
         r12_at_q5 = -r12_at_q23*cos_q5 - r11_at_q4*sin_q5
-        x = x_at_q5 + d6*r12_at_q5
+        x_at_q2 = a1*cos_q1
+        sin_q2 = sin(q2)
+        r11_at_q2 = -cos_q1*sin_q2
+        x_at_q3 = x_at_q2 + a2*r11_at_q2
+        x_at_q4 = x_at_q3 + a3*r11_at_q23 + d3*sin_q1
+        x_at_q5 = x_at_q4 - d4*r12_at_q23
+        d6_times_r12_at_q5 = d6*r12_at_q5
+        x = d6_times_r12_at_q5 + x_at_q5
         r22_at_q23 = -cos_q23*sin_q1
+        r21_at_q23 = -sin_q1*sin_q23
+        r21_at_q4 = r21_at_q23*cos_q4 - cos_q1*sin_q4
+        r22_at_q5 = -r22_at_q23*cos_q5 - r21_at_q4*sin_q5
         y_at_q2 = a1*sin_q1
         r21_at_q2 = -sin_q1*sin_q2
         y_at_q3 = y_at_q2 + a2*r21_at_q2
-        r21_at_q23 = -sin_q1*sin_q23
         y_at_q4 = y_at_q3 + a3*r21_at_q23 - d3*cos_q1
         y_at_q5 = y_at_q4 - d4*r22_at_q23
-        r21_at_q4 = r21_at_q23*cos_q4 - cos_q1*sin_q4
-        r22_at_q5 = -r22_at_q23*cos_q5 - r21_at_q4*sin_q5
-        y = y_at_q5 + d6*r22_at_q5
+        d6_times_r22_at_q5 = d6*r22_at_q5
+        y = d6_times_r22_at_q5 + y_at_q5
+        r31_at_q4 = cos_q23*cos_q4
+        r32_at_q5 = cos_q5*sin_q23 - r31_at_q4*sin_q5
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2*cos_q2
         z_at_q4 = z_at_q3 + a3*cos_q23
         z_at_q5 = z_at_q4 + d4*sin_q23
-        r31_at_q4 = cos_q23*cos_q4
-        r32_at_q5 = cos_q5*sin_q23 - r31_at_q4*sin_q5
         z = z_at_q5 + d6*r32_at_q5
         r12_at_q4 = cos_q4*sin_q1 - r11_at_q23*sin_q4
         r11_at_q5 = r11_at_q4*cos_q5 - r12_at_q23*sin_q5
@@ -127,8 +130,8 @@ class ArrayPrograms(Programs):
         r31_at_q5 = r31_at_q4*cos_q5 + sin_q23*sin_q5
         r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
         r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6*r12_at_q5  # the point that the last joints turn about
-        wrist_y = y - d6*r22_at_q5
+        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
+        wrist_y = y - d6_times_r22_at_q5
         branch_arm = (wrist_x*cos_q1 + wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
@@ -158,13 +161,18 @@ class ArrayPrograms(Programs):
         k = self.constants
         a1 = k.a1
         a2 = k.a2
-        a3 = k.a3
+        a2_minus_effective_q3 = k.a2_minus_effective_q3
+        a2_plus_effective_q3 = k.a2_plus_effective_q3
+        a2_squared_plus_effective_q3_squared = k.a2_squared_plus_effective_q3_squared
+        a3_by_effective_q3 = k.a3_by_effective_q3
         d1 = k.d1
         d3 = k.d3
-        d4 = k.d4
+        d4_by_effective_q3 = k.d4_by_effective_q3
         d6 = k.d6
         effective_q3 = k.effective_q3
-        machine_scale = k.machine_scale
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding = k.machine_scale_times_rounding
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -185,7 +193,9 @@ class ArrayPrograms(Programs):
         single_a5 = k.single_a5
         single_a6 = k.single_a6
         size_q1_for_q3 = k.size_q1_for_q3
-        swing_scale_q3 = k.swing_scale_q3
+        size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
+        swing_scale_q3_squared_times_rounding = k.swing_scale_q3_squared_times_rounding
+        twice_d3 = k.twice_d3
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -201,19 +211,21 @@ class ArrayPrograms(Programs):
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
-        require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
+        require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+        wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3 = root(ahead_squared_q1)*sigma_arm
         wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
         # a later step needs this of q1: no larger in size than
         value_q1_for_q3 = (
-            wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 + wrist_y_from_q1*wrist_y_from_q1
-            - a2*a2 - effective_q3*effective_q3
+            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+            - a2_squared_plus_effective_q3_squared
         )
-        rate_q1_for_q3 = -2.0*d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+        rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
 
         def elsewhere_turn_q1_for_q3() -> Reals:
             turn_q1_for_q3 = 0.0  # to the boundary of the later step
@@ -224,13 +236,14 @@ class ArrayPrograms(Programs):
         )
         turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
         (turn_q1_for_q3,) = elsewhere(
-            absolute(rate_q1_for_q3) > 1e-12*size_q1_for_q3,
+            absolute(rate_q1_for_q3) > size_q1_for_q3_times_rounding,
             (turn_q1_for_q3,),
             elsewhere_turn_q1_for_q3,
             (),
         )
         turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)/turned_length_q1_for_q3
+        one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
+        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -238,43 +251,44 @@ class ArrayPrograms(Programs):
             sin_q1_before_q1_for_q3 = sin(free_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
-        divisor_q1 = distance_q1*distance_q1
         # its reference where it is free
-        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/divisor_q1
-        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/divisor_q1
+        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/distance_q1_squared
+        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/distance_q1_squared
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
-            distance_q1 > 1e-11*machine_scale,
+            distance_q1 > machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
             elsewhere_cos_q1_before_q1_for_q3,
             (ref_a1,),
         )
         turned_cos_q1_for_q3 = (
-            (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+            one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
         )
         turned_sin_q1_for_q3 = (
-            (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+            one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
         )
         # what is left of its own equation
         turned_cost_q1_for_q3 = absolute(d3 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
         # turned within rounding, where the rest can be reached
         ahead_q1 = select(
-            ahead_squared_q1 > 1e-6*machine_scale*machine_scale,
+            ahead_squared_q1 > machine_scale_squared_times_plane,
             ahead_q1_before_q1_for_q3,
             select(
                 absolute(value_q1_for_q3) <= size_q1_for_q3,
                 ahead_q1_before_q1_for_q3,
                 select(
-                    turned_cost_q1_for_q3 > 1e-12*machine_scale, ahead_q1_before_q1_for_q3, turned_ahead_q1_for_q3,
+                    turned_cost_q1_for_q3 > machine_scale_times_rounding, ahead_q1_before_q1_for_q3,
+                    turned_ahead_q1_for_q3,
                 ),
             ),
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (effective_q3 + reach - a2)*(a2 + reach - effective_q3)  # 1 + cosine, times the scale
+        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
+        one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)  # 1 - cosine, times the scale
+        # 1 + cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        require(status, sine_square_q3 >= -1e-12*swing_scale_q3*swing_scale_q3, Status.UNREACHABLE)
+        require(status, sine_square_q3 >= -swing_scale_q3_squared_times_rounding, Status.UNREACHABLE)
 
         def elsewhere_cos_q1(
             cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real, turned_cos_q1_for_q3: Real,
@@ -294,7 +308,7 @@ class ArrayPrograms(Programs):
                 cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
                 sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
                 cos_q1, sin_q1 = elsewhere(
-                    turned_cost_q1_for_q3 > 1e-12*machine_scale,
+                    turned_cost_q1_for_q3 > machine_scale_times_rounding,
                     (cos_q1, sin_q1),
                     elsewhere_cos_q1,
                     (turned_cos_q1_for_q3, turned_sin_q1_for_q3),
@@ -317,7 +331,7 @@ class ArrayPrograms(Programs):
         cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
         sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
         cos_q1, sin_q1 = elsewhere(
-            ahead_squared_q1 > 1e-6*machine_scale*machine_scale,
+            ahead_squared_q1 > machine_scale_squared_times_plane,
             (cos_q1, sin_q1),
             elsewhere_cos_q1,
             (
@@ -344,19 +358,25 @@ class ArrayPrograms(Programs):
         # q2: linear pair in the x_from_q1 and y_from_q1 equations
         along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
         across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2
         length_q2 = select(
-            across_q2*across_q2 + along_q2*along_q2 > 0.0,
-            sqrt(across_q2*across_q2 + along_q2*along_q2),
+            across_q2_squared_plus_along_q2_squared > 0.0,
+            root(across_q2_squared_plus_along_q2_squared),
             1.0,
         )
         cos_q2 = along_q2/length_q2  # its reference where it is free
         sin_q2 = across_q2/length_q2
-        cos_q2, sin_q2 = elsewhere(reach > 1e-11*machine_scale, (cos_q2, sin_q2), elsewhere_cos_q2, (ref_a2,))
+        cos_q2, sin_q2 = elsewhere(
+            reach > machine_scale_times_free_angle,
+            (cos_q2, sin_q2),
+            elsewhere_cos_q2,
+            (ref_a2,),
+        )
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: its turn
-        cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
-        sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
+        cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3
+        sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
@@ -447,13 +467,18 @@ class ArrayPrograms(Programs):
         k = self.constants
         a1 = k.a1
         a2 = k.a2
-        a3 = k.a3
+        a2_minus_effective_q3 = k.a2_minus_effective_q3
+        a2_plus_effective_q3 = k.a2_plus_effective_q3
+        a2_squared_plus_effective_q3_squared = k.a2_squared_plus_effective_q3_squared
+        a3_by_effective_q3 = k.a3_by_effective_q3
         d1 = k.d1
         d3 = k.d3
-        d4 = k.d4
+        d4_by_effective_q3 = k.d4_by_effective_q3
         d6 = k.d6
         effective_q3 = k.effective_q3
-        machine_scale = k.machine_scale
+        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding = k.machine_scale_times_rounding
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -474,7 +499,9 @@ class ArrayPrograms(Programs):
         single_a5 = k.single_a5
         single_a6 = k.single_a6
         size_q1_for_q3 = k.size_q1_for_q3
-        swing_scale_q3 = k.swing_scale_q3
+        size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
+        swing_scale_q3_squared_times_rounding = k.swing_scale_q3_squared_times_rounding
+        twice_d3 = k.twice_d3
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -490,19 +517,21 @@ class ArrayPrograms(Programs):
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
-        require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
+        require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+        wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3_front = root(ahead_squared_q1)
         wrist_x_from_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front - a1
         # a later step needs this of q1: no larger in size than
         value_q1_for_q3_front = (
-            wrist_x_from_q1_before_q1_for_q3_front*wrist_x_from_q1_before_q1_for_q3_front
-            + wrist_y_from_q1*wrist_y_from_q1 - a2*a2 - effective_q3*effective_q3
+            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3_front*wrist_x_from_q1_before_q1_for_q3_front
+            - a2_squared_plus_effective_q3_squared
         )
-        rate_q1_for_q3_front = -2.0*d3*wrist_x_from_q1_before_q1_for_q3_front  # how it changes with q1
+        rate_q1_for_q3_front = -twice_d3*wrist_x_from_q1_before_q1_for_q3_front  # how it changes with q1
 
         def elsewhere_turn_q1_for_q3_front() -> Reals:
             turn_q1_for_q3_front = 0.0  # to the boundary of the later step
@@ -514,7 +543,7 @@ class ArrayPrograms(Programs):
         )
         turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # to the boundary of the later step
         (turn_q1_for_q3_front,) = elsewhere(
-            absolute(rate_q1_for_q3_front) > 1e-12*size_q1_for_q3,
+            absolute(rate_q1_for_q3_front) > size_q1_for_q3_times_rounding,
             (turn_q1_for_q3_front,),
             elsewhere_turn_q1_for_q3_front,
             (),
@@ -531,15 +560,14 @@ class ArrayPrograms(Programs):
                 sin_q1_before_q1_for_q3_back,
             )
 
-        divisor_q1 = distance_q1*distance_q1
         # its reference where it is free
-        cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/divisor_q1
-        sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_y + d3*wrist_x)/divisor_q1
+        cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/distance_q1_squared
+        sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_y + d3*wrist_x)/distance_q1_squared
         # its reference where it is free
-        cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/divisor_q1
-        sin_q1_before_q1_for_q3_back = (d3*wrist_x - ahead_q1_before_q1_for_q3_front*wrist_y)/divisor_q1
+        cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/distance_q1_squared
+        sin_q1_before_q1_for_q3_back = (d3*wrist_x - ahead_q1_before_q1_for_q3_front*wrist_y)/distance_q1_squared
         found = elsewhere(
-            distance_q1 > 1e-11*machine_scale,
+            distance_q1 > machine_scale_times_free_angle,
             (
                 cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back,
                 sin_q1_before_q1_for_q3_back,
@@ -556,25 +584,26 @@ class ArrayPrograms(Programs):
             ahead_q1_before_q1_for_q3_front: Real, cos_q1_before_q1_for_q3_back: Real,
             cos_q1_before_q1_for_q3_front: Real, sin_q1_before_q1_for_q3_back: Real,
             sin_q1_before_q1_for_q3_front: Real, turn_q1_for_q3_front: Real, value_q1_for_q3_front: Real,
-            wrist_x: Real, wrist_y: Real, wrist_y_from_q1: Real,
+            wrist_x: Real, wrist_y: Real, wrist_y_from_q1_squared: Real,
         ) -> Reals:
             turned_length_q1_for_q3_front = root(1.0 + turn_q1_for_q3_front*turn_q1_for_q3_front)
+            one_by_turned_length_q1_for_q3_front = 1.0/turned_length_q1_for_q3_front
             turned_ahead_q1_for_q3_front = (
-                (ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_front)/turned_length_q1_for_q3_front
+                (ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_front)*one_by_turned_length_q1_for_q3_front
             )
 
             def elsewhere_ahead_q1_front(
                 ahead_q1_before_q1_for_q3_front: Real, cos_q1_before_q1_for_q3_front: Real,
-                sin_q1_before_q1_for_q3_front: Real, turn_q1_for_q3_front: Real, turned_ahead_q1_for_q3_front: Real,
-                turned_length_q1_for_q3_front: Real, wrist_x: Real, wrist_y: Real,
+                one_by_turned_length_q1_for_q3_front: Real, sin_q1_before_q1_for_q3_front: Real,
+                turn_q1_for_q3_front: Real, turned_ahead_q1_for_q3_front: Real, wrist_x: Real, wrist_y: Real,
             ) -> Reals:
                 turned_cos_q1_for_q3_front = (
-                    (cos_q1_before_q1_for_q3_front - turn_q1_for_q3_front*sin_q1_before_q1_for_q3_front)
-                    /turned_length_q1_for_q3_front
+                    one_by_turned_length_q1_for_q3_front
+                    *(cos_q1_before_q1_for_q3_front - turn_q1_for_q3_front*sin_q1_before_q1_for_q3_front)
                 )
                 turned_sin_q1_for_q3_front = (
-                    (sin_q1_before_q1_for_q3_front + turn_q1_for_q3_front*cos_q1_before_q1_for_q3_front)
-                    /turned_length_q1_for_q3_front
+                    one_by_turned_length_q1_for_q3_front
+                    *(sin_q1_before_q1_for_q3_front + turn_q1_for_q3_front*cos_q1_before_q1_for_q3_front)
                 )
                 # what is left of its own equation
                 turned_cost_q1_for_q3_front = absolute(
@@ -593,7 +622,7 @@ class ArrayPrograms(Programs):
                 cos_q1_front = cos_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
                 sin_q1_front = sin_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
                 ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
-                    turned_cost_q1_for_q3_front > 1e-12*machine_scale,
+                    turned_cost_q1_for_q3_front > machine_scale_times_rounding,
                     (ahead_q1_front, cos_q1_front, sin_q1_front),
                     elsewhere_ahead_q1_front,
                     (turned_ahead_q1_for_q3_front, turned_cos_q1_for_q3_front, turned_sin_q1_for_q3_front),
@@ -608,15 +637,15 @@ class ArrayPrograms(Programs):
                 (ahead_q1_front, cos_q1_front, sin_q1_front),
                 elsewhere_ahead_q1_front,
                 (
-                    ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front,
-                    turn_q1_for_q3_front, turned_ahead_q1_for_q3_front, turned_length_q1_for_q3_front, wrist_x, wrist_y,
+                    ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front, one_by_turned_length_q1_for_q3_front,
+                    sin_q1_before_q1_for_q3_front, turn_q1_for_q3_front, turned_ahead_q1_for_q3_front, wrist_x, wrist_y,
                 ),
             )
             wrist_x_from_q1_before_q1_for_q3_back = -a1 - ahead_q1_before_q1_for_q3_front
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3_back = (
-                wrist_x_from_q1_before_q1_for_q3_back*wrist_x_from_q1_before_q1_for_q3_back
-                + wrist_y_from_q1*wrist_y_from_q1 - a2*a2 - effective_q3*effective_q3
+                wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3_back*wrist_x_from_q1_before_q1_for_q3_back
+                - a2_squared_plus_effective_q3_squared
             )
 
             def elsewhere_ahead_q1_back(
@@ -624,7 +653,7 @@ class ArrayPrograms(Programs):
                 sin_q1_before_q1_for_q3_back: Real, value_q1_for_q3_back: Real, wrist_x: Real,
                 wrist_x_from_q1_before_q1_for_q3_back: Real, wrist_y: Real,
             ) -> Reals:
-                rate_q1_for_q3_back = -2.0*d3*wrist_x_from_q1_before_q1_for_q3_back  # how it changes with q1
+                rate_q1_for_q3_back = -twice_d3*wrist_x_from_q1_before_q1_for_q3_back  # how it changes with q1
 
                 def elsewhere_turn_q1_for_q3_back() -> Reals:
                     turn_q1_for_q3_back = 0.0  # to the boundary of the later step
@@ -635,19 +664,20 @@ class ArrayPrograms(Programs):
                 )
                 turn_q1_for_q3_back = -excess_q1_for_q3_back/rate_q1_for_q3_back  # to the boundary of the later step
                 (turn_q1_for_q3_back,) = elsewhere(
-                    absolute(rate_q1_for_q3_back) > 1e-12*size_q1_for_q3,
+                    absolute(rate_q1_for_q3_back) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_back,),
                     elsewhere_turn_q1_for_q3_back,
                     (),
                 )
                 turned_length_q1_for_q3_back = root(1.0 + turn_q1_for_q3_back*turn_q1_for_q3_back)
+                one_by_turned_length_q1_for_q3_back = 1.0/turned_length_q1_for_q3_back
                 turned_cos_q1_for_q3_back = (
-                    (cos_q1_before_q1_for_q3_back - turn_q1_for_q3_back*sin_q1_before_q1_for_q3_back)
-                    /turned_length_q1_for_q3_back
+                    one_by_turned_length_q1_for_q3_back
+                    *(cos_q1_before_q1_for_q3_back - turn_q1_for_q3_back*sin_q1_before_q1_for_q3_back)
                 )
                 turned_sin_q1_for_q3_back = (
-                    (sin_q1_before_q1_for_q3_back + turn_q1_for_q3_back*cos_q1_before_q1_for_q3_back)
-                    /turned_length_q1_for_q3_back
+                    one_by_turned_length_q1_for_q3_back
+                    *(sin_q1_before_q1_for_q3_back + turn_q1_for_q3_back*cos_q1_before_q1_for_q3_back)
                 )
                 # what is left of its own equation
                 turned_cost_q1_for_q3_back = absolute(
@@ -655,12 +685,12 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_ahead_q1_back(
-                    ahead_q1_before_q1_for_q3_front: Real, turn_q1_for_q3_back: Real, turned_cos_q1_for_q3_back: Real,
-                    turned_length_q1_for_q3_back: Real, turned_sin_q1_for_q3_back: Real,
+                    ahead_q1_before_q1_for_q3_front: Real, one_by_turned_length_q1_for_q3_back: Real,
+                    turn_q1_for_q3_back: Real, turned_cos_q1_for_q3_back: Real, turned_sin_q1_for_q3_back: Real,
                 ) -> Reals:
                     turned_ahead_q1_for_q3_back = (
                         (-ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_back)
-                        /turned_length_q1_for_q3_back
+                        *one_by_turned_length_q1_for_q3_back
                     )
                     ahead_q1_back = turned_ahead_q1_for_q3_back  # turned within rounding, where the rest can be reached
                     cos_q1_back = turned_cos_q1_for_q3_back  # turned within rounding, where the rest can be reached
@@ -671,12 +701,12 @@ class ArrayPrograms(Programs):
                 cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
                 sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
                 ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
-                    turned_cost_q1_for_q3_back > 1e-12*machine_scale,
+                    turned_cost_q1_for_q3_back > machine_scale_times_rounding,
                     (ahead_q1_back, cos_q1_back, sin_q1_back),
                     elsewhere_ahead_q1_back,
                     (
-                        ahead_q1_before_q1_for_q3_front, turn_q1_for_q3_back, turned_cos_q1_for_q3_back,
-                        turned_length_q1_for_q3_back, turned_sin_q1_for_q3_back,
+                        ahead_q1_before_q1_for_q3_front, one_by_turned_length_q1_for_q3_back, turn_q1_for_q3_back,
+                        turned_cos_q1_for_q3_back, turned_sin_q1_for_q3_back,
                     ),
                 )
                 return (ahead_q1_back, cos_q1_back, sin_q1_back)
@@ -702,23 +732,24 @@ class ArrayPrograms(Programs):
         cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
         sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
         ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
-            ahead_squared_q1 > 1e-6*machine_scale*machine_scale,
+            ahead_squared_q1 > machine_scale_squared_times_plane,
             (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back),
             elsewhere_ahead_q1_front,
             (
                 ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_front,
                 sin_q1_before_q1_for_q3_back, sin_q1_before_q1_for_q3_front, turn_q1_for_q3_front,
-                value_q1_for_q3_front, wrist_x, wrist_y, wrist_y_from_q1,
+                value_q1_for_q3_front, wrist_x, wrist_y, wrist_y_from_q1_squared,
             ),
         )
         wrist_x_from_q1_front = ahead_q1_front - a1  # what the unknown links must span
-        reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
+        reach_front = root(wrist_y_from_q1_squared + wrist_x_from_q1_front*wrist_x_from_q1_front)
         # 1 - cosine, times the scale
-        one_less_cos_q3_front = (a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
+        one_less_cos_q3_front = (a2_plus_effective_q3 + reach_front)*(a2_plus_effective_q3 - reach_front)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_front = (effective_q3 + reach_front - a2)*(a2 + reach_front - effective_q3)
+        one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_front)
         sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front  # the square of sine times scale
-        refusal_front = select(sine_square_q3_front >= -1e-12*swing_scale_q3*swing_scale_q3, 0, 3)  # q3: out of reach
+        # q3: out of reach
+        refusal_front = select(sine_square_q3_front >= -swing_scale_q3_squared_times_rounding, 0, 3)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
@@ -741,10 +772,14 @@ class ArrayPrograms(Programs):
         # q2: linear pair in the x_from_q1 and y_from_q1 equations
         along_q2_front_down = arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
         across_q2_front_down = arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
-        length_q2_squared_front_down = (
+        across_q2_squared_plus_along_q2_squared_front_down = (
             across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
         )
-        length_q2_front_down = select(length_q2_squared_front_down > 0.0, root(length_q2_squared_front_down), 1.0)
+        length_q2_front_down = select(
+            across_q2_squared_plus_along_q2_squared_front_down > 0.0,
+            root(across_q2_squared_plus_along_q2_squared_front_down),
+            1.0,
+        )
         cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
         sin_q2_front_down = across_q2_front_down/length_q2_front_down
         # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -753,7 +788,7 @@ class ArrayPrograms(Programs):
         across_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
         sin_q2_front_up = across_q2_front_up/length_q2_front_down
         cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up = elsewhere(
-            reach_front > 1e-11*machine_scale,
+            reach_front > machine_scale_times_free_angle,
             (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up),
             elsewhere_cos_q2_front_down,
             (ref_a2,),
@@ -762,8 +797,8 @@ class ArrayPrograms(Programs):
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: its turn
         axis_a2_front_down = nearest_period(offset_a2 + degrees(sin_q2_front_down, cos_q2_front_down), near_a2)
-        cos_q3_front_down = a3*cos_swing_q3_front/effective_q3 + d4*sin_swing_q3_front_up/effective_q3
-        sin_q3_front_down = d4*cos_swing_q3_front/effective_q3 - a3*sin_swing_q3_front_up/effective_q3
+        cos_q3_front_down = a3_by_effective_q3*cos_swing_q3_front + d4_by_effective_q3*sin_swing_q3_front_up
+        sin_q3_front_down = d4_by_effective_q3*cos_swing_q3_front - a3_by_effective_q3*sin_swing_q3_front_up
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         # A3: its turn
@@ -867,8 +902,8 @@ class ArrayPrograms(Programs):
         )
         # A2: its turn
         axis_a2_front_up = nearest_period(offset_a2 + degrees(sin_q2_front_up, cos_q2_front_up), near_a2)
-        cos_q3_front_up = a3*cos_swing_q3_front/effective_q3 - d4*sin_swing_q3_front_up/effective_q3
-        sin_q3_front_up = a3*sin_swing_q3_front_up/effective_q3 + d4*cos_swing_q3_front/effective_q3
+        cos_q3_front_up = a3_by_effective_q3*cos_swing_q3_front - d4_by_effective_q3*sin_swing_q3_front_up
+        sin_q3_front_up = a3_by_effective_q3*sin_swing_q3_front_up + d4_by_effective_q3*cos_swing_q3_front
         # A3: its turn
         axis_a3_front_up = nearest_period(offset_a3 + degrees(sin_q3_front_up, cos_q3_front_up), near_a3)
         sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up
@@ -950,13 +985,13 @@ class ArrayPrograms(Programs):
             near_a6,
         )
         wrist_x_from_q1_back = ahead_q1_back - a1  # what the unknown links must span
-        reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
+        reach_back = root(wrist_y_from_q1_squared + wrist_x_from_q1_back*wrist_x_from_q1_back)
         # 1 - cosine, times the scale
-        one_less_cos_q3_back = (a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)
+        one_less_cos_q3_back = (a2_plus_effective_q3 + reach_back)*(a2_plus_effective_q3 - reach_back)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_back = (effective_q3 + reach_back - a2)*(a2 + reach_back - effective_q3)
+        one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_back)
         sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back  # the square of sine times scale
-        refusal_back = select(sine_square_q3_back >= -1e-12*swing_scale_q3*swing_scale_q3, 0, 3)  # q3: out of reach
+        refusal_back = select(sine_square_q3_back >= -swing_scale_q3_squared_times_rounding, 0, 3)  # q3: out of reach
         axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
         both_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back  # twice the scale, with the rounding of its parts
         sum_q3_back = select(both_q3_back > 0.0, both_q3_back, 1.0)
@@ -976,8 +1011,14 @@ class ArrayPrograms(Programs):
         # q2: linear pair in the x_from_q1 and y_from_q1 equations
         along_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
         across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
-        length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-        length_q2_back_down = select(length_q2_squared_back_down > 0.0, root(length_q2_squared_back_down), 1.0)
+        across_q2_squared_plus_along_q2_squared_back_down = (
+            across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
+        )
+        length_q2_back_down = select(
+            across_q2_squared_plus_along_q2_squared_back_down > 0.0,
+            root(across_q2_squared_plus_along_q2_squared_back_down),
+            1.0,
+        )
         cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
         sin_q2_back_down = across_q2_back_down/length_q2_back_down
         # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -986,15 +1027,15 @@ class ArrayPrograms(Programs):
         across_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
         sin_q2_back_up = across_q2_back_up/length_q2_back_down
         cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up = elsewhere(
-            reach_back > 1e-11*machine_scale,
+            reach_back > machine_scale_times_free_angle,
             (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up),
             elsewhere_cos_q2_back_down,
             (ref_a2,),
         )
         # A2: its turn
         axis_a2_back_down = nearest_period(offset_a2 + degrees(sin_q2_back_down, cos_q2_back_down), near_a2)
-        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3 + d4*sin_swing_q3_back_up/effective_q3
-        sin_q3_back_down = d4*cos_swing_q3_back/effective_q3 - a3*sin_swing_q3_back_up/effective_q3
+        cos_q3_back_down = a3_by_effective_q3*cos_swing_q3_back + d4_by_effective_q3*sin_swing_q3_back_up
+        sin_q3_back_down = d4_by_effective_q3*cos_swing_q3_back - a3_by_effective_q3*sin_swing_q3_back_up
         # A3: its turn
         axis_a3_back_down = nearest_period(offset_a3 + degrees(sin_q3_back_down, cos_q3_back_down), near_a3)
         r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
@@ -1084,8 +1125,8 @@ class ArrayPrograms(Programs):
             near_a6,
         )
         axis_a2_back_up = nearest_period(offset_a2 + degrees(sin_q2_back_up, cos_q2_back_up), near_a2)  # A2: its turn
-        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3 - d4*sin_swing_q3_back_up/effective_q3
-        sin_q3_back_up = a3*sin_swing_q3_back_up/effective_q3 + d4*cos_swing_q3_back/effective_q3
+        cos_q3_back_up = a3_by_effective_q3*cos_swing_q3_back - d4_by_effective_q3*sin_swing_q3_back_up
+        sin_q3_back_up = a3_by_effective_q3*sin_swing_q3_back_up + d4_by_effective_q3*cos_swing_q3_back
         axis_a3_back_up = nearest_period(offset_a3 + degrees(sin_q3_back_up, cos_q3_back_up), near_a3)  # A3: its turn
         sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up
         cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up

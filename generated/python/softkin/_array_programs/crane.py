@@ -55,22 +55,24 @@ class ArrayPrograms(Programs):
             (absolute(axis_phi) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_theta) <= 1e9),
             Status.BAD_INPUT,
         )
+        r = axis_r - offset_r
         # R where the machine has no pose
-        require(status, (axis_r - offset_r >= -1e-9) & (axis_r - offset_r <= 1000000001.0), Status.IMPOSSIBLE)
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
+        axis_phi_minus_offset_phi = axis_phi - offset_phi
         # Phi where the machine has no pose
         require(
             status,
-            (axis_phi - offset_phi >= -1e-9) & (axis_phi - offset_phi <= 180.000000181),
+            (axis_phi_minus_offset_phi >= -1e-9) & (axis_phi_minus_offset_phi <= 180.000000181),
             Status.IMPOSSIBLE,
         )
-        r = axis_r - offset_r
         theta = DEGREE*(axis_theta - offset_theta)
         cos_theta = cos(theta)
-        phi = DEGREE*(axis_phi - offset_phi)
+        phi = DEGREE*axis_phi_minus_offset_phi
         sin_phi = sin(phi)
-        x = r*cos_theta*sin_phi  # x: affine in the x equation
+        r_times_sin_phi = r*sin_phi
+        x = r_times_sin_phi*cos_theta  # x: affine in the x equation
         sin_theta = sin(theta)
-        y = r*sin_phi*sin_theta  # y: affine in the y equation
+        y = r_times_sin_phi*sin_theta  # y: affine in the y equation
         cos_phi = cos(phi)
         z = r*cos_phi  # z: affine in the z equation
         return ((x, y, z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
@@ -83,7 +85,7 @@ class ArrayPrograms(Programs):
         (turn_theta,) = turns
         _, ref_theta, ref_phi = reference
         k = self.constants
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_theta = k.mid_theta
         offset_phi = k.offset_phi
         offset_r = k.offset_r
@@ -112,7 +114,7 @@ class ArrayPrograms(Programs):
         direction_x_theta = x  # its reference where it is free
         direction_y_theta = y
         direction_x_theta, direction_y_theta = elsewhere(
-            radius_theta > 1e-11*machine_scale,
+            radius_theta > machine_scale_times_free_angle,
             (direction_x_theta, direction_y_theta),
             elsewhere_direction_x_theta,
             (ref_theta,),
@@ -124,14 +126,15 @@ class ArrayPrograms(Programs):
 
         def elsewhere_direction_x_phi(ref_phi: Real) -> Reals:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
-            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)
+            direction_x_phi = cos(part_of_direction_y_phi)  # its reference where it is free
+            direction_y_phi = sin(part_of_direction_y_phi)
             return (direction_x_phi, direction_y_phi)
 
         direction_x_phi = z  # its reference where it is free
         direction_y_phi = radius_theta
         direction_x_phi, direction_y_phi = elsewhere(
-            radius_phi > 1e-11*machine_scale,
+            radius_phi > machine_scale_times_free_angle,
             (direction_x_phi, direction_y_phi),
             elsewhere_direction_x_phi,
             (ref_phi,),

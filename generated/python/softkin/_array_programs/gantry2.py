@@ -38,14 +38,14 @@ class ArrayPrograms(Programs):
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        machine_scale = k.machine_scale
+        machine_scale_times_plane = k.machine_scale_times_plane
         offset_x = k.offset_x
         offset_y = k.offset_y
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
-        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         axis_x = offset_x + x
         axis_y = offset_y + y
         return (axis_x, axis_y), status

@@ -57,10 +57,11 @@ class ArrayPrograms(Programs):
         r = DEGREE*(axis_r - offset_r)
         cos_r = cos(r)
         sin_r = sin(r)
+        direction_r_times_sin_r = direction_r*sin_r
         return (
             (
                 (joint_x, joint_y, 0.0),
-                ((cos_r, -direction_r*sin_r, 0.0), (direction_r*sin_r, cos_r, 0.0), (0.0, 0.0, 1.0)),
+                ((cos_r, -direction_r_times_sin_r, 0.0), (direction_r_times_sin_r, cos_r, 0.0), (0.0, 0.0, 1.0)),
                 (),
             ),
             status,
@@ -76,7 +77,7 @@ class ArrayPrograms(Programs):
         _, _, ref_r = reference
         k = self.constants
         direction_r = k.direction_r
-        machine_scale = k.machine_scale
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_r = k.mid_r
         offset_r = k.offset_r
         offset_x = k.offset_x
@@ -95,7 +96,7 @@ class ArrayPrograms(Programs):
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # z: a planar machine has none
-        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         axis_x = offset_x + x
         axis_y = offset_y + y
         direction_y_r = direction_r*heading_across

@@ -62,10 +62,11 @@ class ArrayPrograms(Programs):
         r = DEGREE*(axis_r - offset_r)
         cos_r = cos(r)
         sin_r = sin(r)
+        direction_r_times_sin_r = direction_r*sin_r
         return (
             (
                 (joint_x, joint_y, joint_z),
-                ((cos_r, -direction_r*sin_r, 0.0), (direction_r*sin_r, cos_r, 0.0), (0.0, 0.0, 1.0)),
+                ((cos_r, -direction_r_times_sin_r, 0.0), (direction_r_times_sin_r, cos_r, 0.0), (0.0, 0.0, 1.0)),
                 (),
             ),
             status,

@@ -66,13 +66,15 @@ class ArrayPrograms(StartedPrograms):
         base_6_x = k.base_6_x
         base_6_y = k.base_6_y
         base_6_z = k.base_6_z
-        machine_scale = k.machine_scale
+        machine_scale_squared = k.machine_scale_squared
+        machine_scale_times_shortest_link = k.machine_scale_times_shortest_link
         offset_l1 = k.offset_l1
         offset_l2 = k.offset_l2
         offset_l3 = k.offset_l3
         offset_l4 = k.offset_l4
         offset_l5 = k.offset_l5
         offset_l6 = k.offset_l6
+        one_by_platform_radius = k.one_by_platform_radius
         platform_1_x = k.platform_1_x
         platform_1_y = k.platform_1_y
         platform_1_z = k.platform_1_z
@@ -91,7 +93,6 @@ class ArrayPrograms(StartedPrograms):
         platform_6_x = k.platform_6_x
         platform_6_y = k.platform_6_y
         platform_6_z = k.platform_6_z
-        platform_radius = k.platform_radius
         within = k.within
         # numbers of reasonable size
         require(
@@ -143,19 +144,22 @@ class ArrayPrograms(StartedPrograms):
             sin_roll = sin(roll)
             sin_pitch = sin(pitch)
             sin_yaw = sin(yaw)
-            turned_12 = cos_yaw*sin_pitch*sin_roll - cos_roll*sin_yaw
-            turned_13 = sin_roll*sin_yaw + cos_roll*cos_yaw*sin_pitch
+            cos_roll_times_sin_yaw = cos_roll*sin_yaw
+            cos_yaw_times_sin_roll = cos_yaw*sin_roll
+            turned_12 = cos_yaw_times_sin_roll*sin_pitch - cos_roll_times_sin_yaw
+            sin_roll_times_sin_yaw = sin_roll*sin_yaw
+            cos_roll_times_cos_yaw = cos_roll*cos_yaw
+            turned_13 = sin_roll_times_sin_yaw + cos_roll_times_cos_yaw*sin_pitch
             arm_1_x = start_arm_1_x*turned_11 + start_arm_1_y*turned_12 + start_arm_1_z*turned_13
             span_1_x = arm_1_x + x - base_1_x  # leg 1: from its joint on the base to its joint on the platform
             turned_21 = cos_pitch*sin_yaw
-            turned_22 = cos_roll*cos_yaw + sin_pitch*sin_roll*sin_yaw
-            turned_23 = cos_roll*sin_pitch*sin_yaw - cos_yaw*sin_roll
+            turned_22 = cos_roll_times_cos_yaw + sin_pitch*sin_roll_times_sin_yaw
+            turned_23 = cos_roll_times_sin_yaw*sin_pitch - cos_yaw_times_sin_roll
             arm_1_y = start_arm_1_x*turned_21 + start_arm_1_y*turned_22 + start_arm_1_z*turned_23
             span_1_y = arm_1_y + y - base_1_y
-            turned_31 = -sin_pitch
             turned_32 = cos_pitch*sin_roll
             turned_33 = cos_pitch*cos_roll
-            arm_1_z = start_arm_1_x*turned_31 + start_arm_1_y*turned_32 + start_arm_1_z*turned_33
+            arm_1_z = start_arm_1_y*turned_32 + start_arm_1_z*turned_33 - start_arm_1_x*sin_pitch
             span_1_z = arm_1_z + z - base_1_z
             length_1 = sqrt(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
             error_1 = length_1 - l1  # by what leg 1 would be too long
@@ -163,7 +167,7 @@ class ArrayPrograms(StartedPrograms):
             span_2_x = arm_2_x + x - base_2_x  # leg 2: from its joint on the base to its joint on the platform
             arm_2_y = start_arm_2_x*turned_21 + start_arm_2_y*turned_22 + start_arm_2_z*turned_23
             span_2_y = arm_2_y + y - base_2_y
-            arm_2_z = start_arm_2_x*turned_31 + start_arm_2_y*turned_32 + start_arm_2_z*turned_33
+            arm_2_z = start_arm_2_y*turned_32 + start_arm_2_z*turned_33 - start_arm_2_x*sin_pitch
             span_2_z = arm_2_z + z - base_2_z
             length_2 = sqrt(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
             error_2 = length_2 - l2  # by what leg 2 would be too long
@@ -171,7 +175,7 @@ class ArrayPrograms(StartedPrograms):
             span_3_x = arm_3_x + x - base_3_x  # leg 3: from its joint on the base to its joint on the platform
             arm_3_y = start_arm_3_x*turned_21 + start_arm_3_y*turned_22 + start_arm_3_z*turned_23
             span_3_y = arm_3_y + y - base_3_y
-            arm_3_z = start_arm_3_x*turned_31 + start_arm_3_y*turned_32 + start_arm_3_z*turned_33
+            arm_3_z = start_arm_3_y*turned_32 + start_arm_3_z*turned_33 - start_arm_3_x*sin_pitch
             span_3_z = arm_3_z + z - base_3_z
             length_3 = sqrt(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
             error_3 = length_3 - l3  # by what leg 3 would be too long
@@ -179,7 +183,7 @@ class ArrayPrograms(StartedPrograms):
             span_4_x = arm_4_x + x - base_4_x  # leg 4: from its joint on the base to its joint on the platform
             arm_4_y = start_arm_4_x*turned_21 + start_arm_4_y*turned_22 + start_arm_4_z*turned_23
             span_4_y = arm_4_y + y - base_4_y
-            arm_4_z = start_arm_4_x*turned_31 + start_arm_4_y*turned_32 + start_arm_4_z*turned_33
+            arm_4_z = start_arm_4_y*turned_32 + start_arm_4_z*turned_33 - start_arm_4_x*sin_pitch
             span_4_z = arm_4_z + z - base_4_z
             length_4 = sqrt(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
             error_4 = length_4 - l4  # by what leg 4 would be too long
@@ -187,7 +191,7 @@ class ArrayPrograms(StartedPrograms):
             span_5_x = arm_5_x + x - base_5_x  # leg 5: from its joint on the base to its joint on the platform
             arm_5_y = start_arm_5_x*turned_21 + start_arm_5_y*turned_22 + start_arm_5_z*turned_23
             span_5_y = arm_5_y + y - base_5_y
-            arm_5_z = start_arm_5_x*turned_31 + start_arm_5_y*turned_32 + start_arm_5_z*turned_33
+            arm_5_z = start_arm_5_y*turned_32 + start_arm_5_z*turned_33 - start_arm_5_x*sin_pitch
             span_5_z = arm_5_z + z - base_5_z
             length_5 = sqrt(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
             error_5 = length_5 - l5  # by what leg 5 would be too long
@@ -195,7 +199,7 @@ class ArrayPrograms(StartedPrograms):
             span_6_x = arm_6_x + x - base_6_x  # leg 6: from its joint on the base to its joint on the platform
             arm_6_y = start_arm_6_x*turned_21 + start_arm_6_y*turned_22 + start_arm_6_z*turned_23
             span_6_y = arm_6_y + y - base_6_y
-            arm_6_z = start_arm_6_x*turned_31 + start_arm_6_y*turned_32 + start_arm_6_z*turned_33
+            arm_6_z = start_arm_6_y*turned_32 + start_arm_6_z*turned_33 - start_arm_6_x*sin_pitch
             span_6_z = arm_6_z + z - base_6_z
             length_6 = sqrt(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
             error_6 = length_6 - l6  # by what leg 6 would be too long
@@ -205,53 +209,59 @@ class ArrayPrograms(StartedPrograms):
                 & (absolute(error_4) <= within) & (absolute(error_5) <= within) & (absolute(error_6) <= within)
             )
             # leg 1: its direction, and the moment of that about the platform's origin
-            divisor_1 = select(length_1 > 1e-9*machine_scale, length_1, 1.0)
-            along_1_x = span_1_x/divisor_1
-            along_1_y = span_1_y/divisor_1
-            along_1_z = span_1_z/divisor_1
-            moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
-            moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-            moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
+            divisor_1 = select(length_1 > machine_scale_times_shortest_link, length_1, 1.0)
+            one_by_divisor_1 = 1.0/divisor_1
+            along_1_x = one_by_divisor_1*span_1_x
+            along_1_y = one_by_divisor_1*span_1_y
+            along_1_z = one_by_divisor_1*span_1_z
+            moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*one_by_platform_radius
+            moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*one_by_platform_radius
+            moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*one_by_platform_radius
             # leg 2: its direction, and the moment of that about the platform's origin
-            divisor_2 = select(length_2 > 1e-9*machine_scale, length_2, 1.0)
-            along_2_x = span_2_x/divisor_2
-            along_2_y = span_2_y/divisor_2
-            along_2_z = span_2_z/divisor_2
-            moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
-            moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-            moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
+            divisor_2 = select(length_2 > machine_scale_times_shortest_link, length_2, 1.0)
+            one_by_divisor_2 = 1.0/divisor_2
+            along_2_x = one_by_divisor_2*span_2_x
+            along_2_y = one_by_divisor_2*span_2_y
+            along_2_z = one_by_divisor_2*span_2_z
+            moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*one_by_platform_radius
+            moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*one_by_platform_radius
+            moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*one_by_platform_radius
             # leg 3: its direction, and the moment of that about the platform's origin
-            divisor_3 = select(length_3 > 1e-9*machine_scale, length_3, 1.0)
-            along_3_x = span_3_x/divisor_3
-            along_3_y = span_3_y/divisor_3
-            along_3_z = span_3_z/divisor_3
-            moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
-            moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-            moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
+            divisor_3 = select(length_3 > machine_scale_times_shortest_link, length_3, 1.0)
+            one_by_divisor_3 = 1.0/divisor_3
+            along_3_x = one_by_divisor_3*span_3_x
+            along_3_y = one_by_divisor_3*span_3_y
+            along_3_z = one_by_divisor_3*span_3_z
+            moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*one_by_platform_radius
+            moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*one_by_platform_radius
+            moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*one_by_platform_radius
             # leg 4: its direction, and the moment of that about the platform's origin
-            divisor_4 = select(length_4 > 1e-9*machine_scale, length_4, 1.0)
-            along_4_x = span_4_x/divisor_4
-            along_4_y = span_4_y/divisor_4
-            along_4_z = span_4_z/divisor_4
-            moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
-            moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-            moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
+            divisor_4 = select(length_4 > machine_scale_times_shortest_link, length_4, 1.0)
+            one_by_divisor_4 = 1.0/divisor_4
+            along_4_x = one_by_divisor_4*span_4_x
+            along_4_y = one_by_divisor_4*span_4_y
+            along_4_z = one_by_divisor_4*span_4_z
+            moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*one_by_platform_radius
+            moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*one_by_platform_radius
+            moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*one_by_platform_radius
             # leg 5: its direction, and the moment of that about the platform's origin
-            divisor_5 = select(length_5 > 1e-9*machine_scale, length_5, 1.0)
-            along_5_x = span_5_x/divisor_5
-            along_5_y = span_5_y/divisor_5
-            along_5_z = span_5_z/divisor_5
-            moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
-            moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-            moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
+            divisor_5 = select(length_5 > machine_scale_times_shortest_link, length_5, 1.0)
+            one_by_divisor_5 = 1.0/divisor_5
+            along_5_x = one_by_divisor_5*span_5_x
+            along_5_y = one_by_divisor_5*span_5_y
+            along_5_z = one_by_divisor_5*span_5_z
+            moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*one_by_platform_radius
+            moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*one_by_platform_radius
+            moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*one_by_platform_radius
             # leg 6: its direction, and the moment of that about the platform's origin
-            divisor_6 = select(length_6 > 1e-9*machine_scale, length_6, 1.0)
-            along_6_x = span_6_x/divisor_6
-            along_6_y = span_6_y/divisor_6
-            along_6_z = span_6_z/divisor_6
-            moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
-            moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-            moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
+            divisor_6 = select(length_6 > machine_scale_times_shortest_link, length_6, 1.0)
+            one_by_divisor_6 = 1.0/divisor_6
+            along_6_x = one_by_divisor_6*span_6_x
+            along_6_y = one_by_divisor_6*span_6_y
+            along_6_z = one_by_divisor_6*span_6_z
+            moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*one_by_platform_radius
+            moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*one_by_platform_radius
+            moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*one_by_platform_radius
             # the twist that lets the errors vanish
             determinant, x_rate, y_rate, z_rate, swing_x, swing_y, swing_z = solve(
                 (
@@ -264,20 +274,20 @@ class ArrayPrograms(StartedPrograms):
                 ),
                 ((-error_1,), (-error_2,), (-error_3,), (-error_4,), (-error_5,), (-error_6,)),
             )
-            spin_x = swing_x/platform_radius
-            spin_y = swing_y/platform_radius
+            spin_x = one_by_platform_radius*swing_x
+            spin_y = one_by_platform_radius*swing_y
             cos_pitch_divisor = select(absolute(cos_pitch) > 1e-11, cos_pitch, 1.0)
             roll_rate = (spin_x*cos_yaw + spin_y*sin_yaw)/cos_pitch_divisor
             pitch_rate = spin_y*cos_yaw - spin_x*sin_yaw
-            spin_z = swing_z/platform_radius
+            spin_z = one_by_platform_radius*swing_z
             yaw_rate = spin_z + roll_rate*sin_pitch
             # of the step, in machines and radians
             size = root(
                 pitch_rate*pitch_rate + roll_rate*roll_rate + yaw_rate*yaw_rate
-                + x_rate*x_rate/(machine_scale*machine_scale) + y_rate*y_rate/(machine_scale*machine_scale)
-                + z_rate*z_rate/(machine_scale*machine_scale)
+                + (x_rate*x_rate + y_rate*y_rate + z_rate*z_rate)/machine_scale_squared
             )
             stretch = select(size > 0.5, 2.0*size, 1.0)
+            one_by_stretch = 1.0/stretch
             done = fit & fitted
             if settled(done, status):
                 break
@@ -285,12 +295,12 @@ class ArrayPrograms(StartedPrograms):
                 done,
                 (x, y, z, roll, pitch, yaw, fitted),
                 (
-                    x + x_rate/stretch,
-                    y + y_rate/stretch,
-                    z + z_rate/stretch,
-                    roll + roll_rate/stretch,
-                    pitch + pitch_rate/stretch,
-                    yaw + yaw_rate/stretch,
+                    x + one_by_stretch*x_rate,
+                    y + one_by_stretch*y_rate,
+                    z + one_by_stretch*z_rate,
+                    roll + one_by_stretch*roll_rate,
+                    pitch + one_by_stretch*pitch_rate,
+                    yaw + one_by_stretch*yaw_rate,
                     fit,
                 ),
             )
@@ -303,9 +313,9 @@ class ArrayPrograms(StartedPrograms):
         r21 = start_r11*turned_21 + start_r21*turned_22 + start_r31*turned_23
         r22 = start_r12*turned_21 + start_r22*turned_22 + start_r32*turned_23
         r23 = start_r13*turned_21 + start_r23*turned_22 + start_r33*turned_23
-        r31 = start_r11*turned_31 + start_r21*turned_32 + start_r31*turned_33
-        r32 = start_r12*turned_31 + start_r22*turned_32 + start_r32*turned_33
-        r33 = start_r13*turned_31 + start_r23*turned_32 + start_r33*turned_33
+        r31 = start_r21*turned_32 + start_r31*turned_33 - start_r11*sin_pitch
+        r32 = start_r22*turned_32 + start_r32*turned_33 - start_r12*sin_pitch
+        r33 = start_r23*turned_32 + start_r33*turned_33 - start_r13*sin_pitch
         return (
             x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, determinant, along_1_x, along_1_y, along_1_z,
             moment_1_x, moment_1_y, moment_1_z, along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z,
@@ -417,7 +427,7 @@ class ArrayPrograms(StartedPrograms):
         home_along_6_z = k.home_along_6_z
         least_cos_base = k.least_cos_base
         least_cos_plate = k.least_cos_plate
-        machine_scale = k.machine_scale
+        machine_scale_times_shortest_link = k.machine_scale_times_shortest_link
         min_type2_margin = k.min_type2_margin
         offset_l1 = k.offset_l1
         offset_l2 = k.offset_l2
@@ -425,6 +435,7 @@ class ArrayPrograms(StartedPrograms):
         offset_l4 = k.offset_l4
         offset_l5 = k.offset_l5
         offset_l6 = k.offset_l6
+        one_by_platform_radius = k.one_by_platform_radius
         plate_axis_1_x = k.plate_axis_1_x
         plate_axis_1_y = k.plate_axis_1_y
         plate_axis_1_z = k.plate_axis_1_z
@@ -461,103 +472,126 @@ class ArrayPrograms(StartedPrograms):
         platform_6_x = k.platform_6_x
         platform_6_y = k.platform_6_y
         platform_6_z = k.platform_6_z
-        platform_radius = k.platform_radius
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x  # rod 1
-        span_1_y = y + platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23 - base_1_y  # rod 1
-        span_1_z = z + platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33 - base_1_z  # rod 1
+        arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
+        span_1_x = arm_1_x + x - base_1_x  # rod 1
+        arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
+        span_1_y = arm_1_y + y - base_1_y  # rod 1
+        arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
+        span_1_z = arm_1_z + z - base_1_z  # rod 1
         # l1: quadratic in the rod 1 equation
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = root(root_square_l1)
         # leg 1: without length it has no direction
-        require(status, l1 > 1e-9*machine_scale, Status.UNREACHABLE)
-        span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x  # rod 2
-        span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y  # rod 2
-        span_2_z = z + platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33 - base_2_z  # rod 2
+        require(status, l1 > machine_scale_times_shortest_link, Status.UNREACHABLE)
+        arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
+        span_2_x = arm_2_x + x - base_2_x  # rod 2
+        arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
+        span_2_y = arm_2_y + y - base_2_y  # rod 2
+        arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
+        span_2_z = arm_2_z + z - base_2_z  # rod 2
         # l2: quadratic in the rod 2 equation
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = root(root_square_l2)
         # leg 2: without length it has no direction
-        require(status, l2 > 1e-9*machine_scale, Status.UNREACHABLE)
-        span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x  # rod 3
-        span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y  # rod 3
-        span_3_z = z + platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33 - base_3_z  # rod 3
+        require(status, l2 > machine_scale_times_shortest_link, Status.UNREACHABLE)
+        arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
+        span_3_x = arm_3_x + x - base_3_x  # rod 3
+        arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
+        span_3_y = arm_3_y + y - base_3_y  # rod 3
+        arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
+        span_3_z = arm_3_z + z - base_3_z  # rod 3
         # l3: quadratic in the rod 3 equation
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = root(root_square_l3)
         # leg 3: without length it has no direction
-        require(status, l3 > 1e-9*machine_scale, Status.UNREACHABLE)
-        span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x  # rod 4
-        span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y  # rod 4
-        span_4_z = z + platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33 - base_4_z  # rod 4
+        require(status, l3 > machine_scale_times_shortest_link, Status.UNREACHABLE)
+        arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
+        span_4_x = arm_4_x + x - base_4_x  # rod 4
+        arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
+        span_4_y = arm_4_y + y - base_4_y  # rod 4
+        arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
+        span_4_z = arm_4_z + z - base_4_z  # rod 4
         # l4: quadratic in the rod 4 equation
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = root(root_square_l4)
         # leg 4: without length it has no direction
-        require(status, l4 > 1e-9*machine_scale, Status.UNREACHABLE)
-        span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x  # rod 5
-        span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y  # rod 5
-        span_5_z = z + platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33 - base_5_z  # rod 5
+        require(status, l4 > machine_scale_times_shortest_link, Status.UNREACHABLE)
+        arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
+        span_5_x = arm_5_x + x - base_5_x  # rod 5
+        arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
+        span_5_y = arm_5_y + y - base_5_y  # rod 5
+        arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
+        span_5_z = arm_5_z + z - base_5_z  # rod 5
         # l5: quadratic in the rod 5 equation
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = root(root_square_l5)
         # leg 5: without length it has no direction
-        require(status, l5 > 1e-9*machine_scale, Status.UNREACHABLE)
-        span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x  # rod 6
-        span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y  # rod 6
-        span_6_z = z + platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33 - base_6_z  # rod 6
+        require(status, l5 > machine_scale_times_shortest_link, Status.UNREACHABLE)
+        arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
+        span_6_x = arm_6_x + x - base_6_x  # rod 6
+        arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
+        span_6_y = arm_6_y + y - base_6_y  # rod 6
+        arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
+        span_6_z = arm_6_z + z - base_6_z  # rod 6
         # l6: quadratic in the rod 6 equation
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = root(root_square_l6)
         # leg 6: without length it has no direction
-        require(status, l6 > 1e-9*machine_scale, Status.UNREACHABLE)
+        require(status, l6 > machine_scale_times_shortest_link, Status.UNREACHABLE)
         # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = select(l1 > 1e-9*machine_scale, l1, 1.0)
-        along_1_x = span_1_x/divisor_1
-        along_1_y = span_1_y/divisor_1
-        along_1_z = span_1_z/divisor_1
+        divisor_1 = select(l1 > machine_scale_times_shortest_link, l1, 1.0)
+        one_by_divisor_1 = 1.0/divisor_1
+        along_1_x = one_by_divisor_1*span_1_x
+        along_1_y = one_by_divisor_1*span_1_y
+        along_1_z = one_by_divisor_1*span_1_z
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
         # leg 1: its joint on the base bends beyond its cone
         require(status, cos_base_lean_1 >= least_cos_base, Status.UNREACHABLE)
         # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = select(l2 > 1e-9*machine_scale, l2, 1.0)
-        along_2_x = span_2_x/divisor_2
-        along_2_y = span_2_y/divisor_2
-        along_2_z = span_2_z/divisor_2
+        divisor_2 = select(l2 > machine_scale_times_shortest_link, l2, 1.0)
+        one_by_divisor_2 = 1.0/divisor_2
+        along_2_x = one_by_divisor_2*span_2_x
+        along_2_y = one_by_divisor_2*span_2_y
+        along_2_z = one_by_divisor_2*span_2_z
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
         # leg 2: its joint on the base bends beyond its cone
         require(status, cos_base_lean_2 >= least_cos_base, Status.UNREACHABLE)
         # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = select(l3 > 1e-9*machine_scale, l3, 1.0)
-        along_3_x = span_3_x/divisor_3
-        along_3_y = span_3_y/divisor_3
-        along_3_z = span_3_z/divisor_3
+        divisor_3 = select(l3 > machine_scale_times_shortest_link, l3, 1.0)
+        one_by_divisor_3 = 1.0/divisor_3
+        along_3_x = one_by_divisor_3*span_3_x
+        along_3_y = one_by_divisor_3*span_3_y
+        along_3_z = one_by_divisor_3*span_3_z
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
         # leg 3: its joint on the base bends beyond its cone
         require(status, cos_base_lean_3 >= least_cos_base, Status.UNREACHABLE)
         # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = select(l4 > 1e-9*machine_scale, l4, 1.0)
-        along_4_x = span_4_x/divisor_4
-        along_4_y = span_4_y/divisor_4
-        along_4_z = span_4_z/divisor_4
+        divisor_4 = select(l4 > machine_scale_times_shortest_link, l4, 1.0)
+        one_by_divisor_4 = 1.0/divisor_4
+        along_4_x = one_by_divisor_4*span_4_x
+        along_4_y = one_by_divisor_4*span_4_y
+        along_4_z = one_by_divisor_4*span_4_z
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
         # leg 4: its joint on the base bends beyond its cone
         require(status, cos_base_lean_4 >= least_cos_base, Status.UNREACHABLE)
         # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = select(l5 > 1e-9*machine_scale, l5, 1.0)
-        along_5_x = span_5_x/divisor_5
-        along_5_y = span_5_y/divisor_5
-        along_5_z = span_5_z/divisor_5
+        divisor_5 = select(l5 > machine_scale_times_shortest_link, l5, 1.0)
+        one_by_divisor_5 = 1.0/divisor_5
+        along_5_x = one_by_divisor_5*span_5_x
+        along_5_y = one_by_divisor_5*span_5_y
+        along_5_z = one_by_divisor_5*span_5_z
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
         # leg 5: its joint on the base bends beyond its cone
         require(status, cos_base_lean_5 >= least_cos_base, Status.UNREACHABLE)
         # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = select(l6 > 1e-9*machine_scale, l6, 1.0)
-        along_6_x = span_6_x/divisor_6
-        along_6_y = span_6_y/divisor_6
-        along_6_z = span_6_z/divisor_6
+        divisor_6 = select(l6 > machine_scale_times_shortest_link, l6, 1.0)
+        one_by_divisor_6 = 1.0/divisor_6
+        along_6_x = one_by_divisor_6*span_6_x
+        along_6_y = one_by_divisor_6*span_6_y
+        along_6_z = one_by_divisor_6*span_6_z
         cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
         # leg 6: its joint on the base bends beyond its cone
         require(status, cos_base_lean_6 >= least_cos_base, Status.UNREACHABLE)
@@ -597,42 +631,24 @@ class ArrayPrograms(StartedPrograms):
         cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
         # leg 6: its joint on the plate bends beyond its cone
         require(status, cos_plate_lean_6 >= least_cos_plate, Status.UNREACHABLE)
-        arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
-        arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
-        moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
-        arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
-        moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-        moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
-        arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
-        arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
-        moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
-        arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
-        moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-        moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
-        arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
-        arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
-        moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
-        arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
-        moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-        moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
-        arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
-        arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
-        moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
-        arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
-        moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-        moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
-        arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
-        arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
-        moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
-        arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
-        moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-        moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
-        arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
-        arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
-        moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
-        arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
-        moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-        moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
+        moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*one_by_platform_radius
+        moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*one_by_platform_radius
+        moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*one_by_platform_radius
+        moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*one_by_platform_radius
+        moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*one_by_platform_radius
+        moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*one_by_platform_radius
+        moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*one_by_platform_radius
+        moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*one_by_platform_radius
+        moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*one_by_platform_radius
+        moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*one_by_platform_radius
+        moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*one_by_platform_radius
+        moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*one_by_platform_radius
+        moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*one_by_platform_radius
+        moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*one_by_platform_radius
+        moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*one_by_platform_radius
+        moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*one_by_platform_radius
+        moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*one_by_platform_radius
+        moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*one_by_platform_radius
         # margin of the platform
         (determinant,) = solve(
             (

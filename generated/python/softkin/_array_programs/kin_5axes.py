@@ -49,7 +49,7 @@ class ArrayPrograms(Programs):
         offset_x = k.offset_x
         offset_y = k.offset_y
         offset_z = k.offset_z
-        tool_length = k.tool_length
+        tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
         status = passed(axes)
         # numbers of reasonable size
@@ -61,26 +61,29 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        joint_x = axis_x - offset_x
         a = DEGREE*(axis_a - offset_a)
         cos_a = cos(a)
         b = DEGREE*(axis_b - offset_b)
         sin_b = sin(b)
-        r13_at_b = tool_side*cos_a*sin_b
-        x = joint_x + r13_at_b*tool_length*tool_side
-        joint_y = axis_y - offset_y
-        sin_a = sin(a)
-        r23_at_b = tool_side*sin_a*sin_b
-        y = joint_y + r23_at_b*tool_length*tool_side
-        joint_z = axis_z - offset_z
-        cos_b = cos(b)
-        z = joint_z + tool_length*tool_side*cos_b
-        r11_at_b = cos_a*cos_b
-        r12 = -sin_a
-        r21_at_b = cos_b*sin_a
         r31_at_b = -tool_side*sin_b
+        r13_at_b = -r31_at_b*cos_a
+        joint_x = axis_x - offset_x
+        x = joint_x + r13_at_b*tool_length_times_tool_side
+        sin_a = sin(a)
+        r23_at_b = -r31_at_b*sin_a
+        joint_y = axis_y - offset_y
+        y = joint_y + r23_at_b*tool_length_times_tool_side
+        cos_b = cos(b)
+        joint_z = axis_z - offset_z
+        z = joint_z + tool_length_times_tool_side*cos_b
+        r11_at_b = cos_a*cos_b
+        r21_at_b = cos_b*sin_a
         return (
-            ((x, y, z), ((r11_at_b, r12, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)), (sin_b,)),
+            (
+                (x, y, z),
+                ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)),
+                (sin_b,),
+            ),
             status,
         )
 
@@ -103,7 +106,7 @@ class ArrayPrograms(Programs):
         offset_z = k.offset_z
         single_a = k.single_a
         single_b = k.single_b
-        tool_length = k.tool_length
+        tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
         status = passed(position)
         # numbers of reasonable size
@@ -115,11 +118,11 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
+        wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
-        wrist_y = y - r23*tool_length*tool_side
+        wrist_y = y - r23*tool_length_times_tool_side
         axis_y = offset_y + wrist_y
-        wrist_z = z - r33*tool_length*tool_side
+        wrist_z = z - r33*tool_length_times_tool_side
         axis_z = offset_z + wrist_z
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
@@ -194,7 +197,7 @@ class ArrayPrograms(Programs):
         offset_z = k.offset_z
         single_a = k.single_a
         single_b = k.single_b
-        tool_length = k.tool_length
+        tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
         status = passed(position)
         # numbers of reasonable size
@@ -206,11 +209,11 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
+        wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
-        wrist_y = y - r23*tool_length*tool_side
+        wrist_y = y - r23*tool_length_times_tool_side
         axis_y = offset_y + wrist_y
-        wrist_z = z - r33*tool_length*tool_side
+        wrist_z = z - r33*tool_length_times_tool_side
         axis_z = offset_z + wrist_z
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side

@@ -36,8 +36,9 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2 = axes
         k = self.constants
         arm_length = k.arm_length
+        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
-        machine_scale = k.machine_scale
+        machine_scale_times_rounding = k.machine_scale_times_rounding
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         tcp_link_distance = k.tcp_link_distance
@@ -46,13 +47,13 @@ class ArrayPrograms(Programs):
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
+        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1
         # the mirror that the machine does not have
-        require(status, 0.5*a2 - 0.5*a1 - 0.5*tcp_link_distance >= -1e-12*machine_scale, Status.IMPOSSIBLE)
-        pivot_1_x = 0.5*a2 - 0.5*a1 - 0.5*tcp_link_distance  # rod 1
+        require(status, pivot_1_x >= -machine_scale_times_rounding, Status.IMPOSSIBLE)
         root_square_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # y: quadratic in the rod 1 equation
         # rod 1 cannot reach
-        require(status, root_square_y >= -1e-12*arm_length*arm_length, Status.IMPOSSIBLE)
-        x = 0.5*a1 + 0.5*a2  # x: affine in the x equation
+        require(status, root_square_y >= -arm_length_squared_times_rounding, Status.IMPOSSIBLE)
+        x = 0.5*(a1 + a2)  # x: affine in the x equation
         y = root(root_square_y)*assembly_sign
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
@@ -63,21 +64,22 @@ class ArrayPrograms(Programs):
         x, y, z = position
         k = self.constants
         arm_length = k.arm_length
-        assembly_sign = k.assembly_sign
-        machine_scale = k.machine_scale
+        assembly_sign_by_arm_length = k.assembly_sign_by_arm_length
+        machine_scale_times_plane = k.machine_scale_times_plane
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        part_of_constant = k.part_of_constant
         span_1_x = k.span_1_x
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
-        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
-        root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
+        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
+        root_square_a2 = (arm_length + y)*(arm_length - y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
-        require(status, root_square_a2 >= -2.5e-13*arm_length*arm_length, Status.UNREACHABLE)
-        type2_flat = assembly_sign*y/arm_length
+        require(status, root_square_a2 >= -part_of_constant, Status.UNREACHABLE)
+        type2_flat = assembly_sign_by_arm_length*y
         # flat: the other assembly mode, or too near to losing the plate
         require(status, type2_flat >= min_type2_margin, Status.UNREACHABLE)
         middle_a2 = span_1_x + x

@@ -30,8 +30,8 @@ class ArrayPrograms(Programs):
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        x = 0.5*a1 - 0.5*a2
-        y = 0.5*a1 + 0.5*a2
+        x = 0.5*(a1 - a2)
+        y = 0.5*(a1 + a2)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
@@ -40,14 +40,14 @@ class ArrayPrograms(Programs):
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        machine_scale = k.machine_scale
+        machine_scale_times_plane = k.machine_scale_times_plane
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
-        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         a1 = x + y  # a1, a2: affine in the x and y equations
         axis_a1 = a1 + offset_a1
         a2 = y - x
@@ -75,10 +75,10 @@ class ArrayPrograms(Programs):
         require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        value_x = 0.5*a1 - 0.5*a2  # X of the carriage
+        value_x = 0.5*(a1 - a2)  # X of the carriage
         # limits of X of the carriage
         require(status, (value_x >= lowest_x) & (value_x <= highest_x), Status.UNREACHABLE)
-        value_y = 0.5*a1 + 0.5*a2  # Y of the carriage
+        value_y = 0.5*(a1 + a2)  # Y of the carriage
         # limits of Y of the carriage
         require(status, (value_y >= lowest_y) & (value_y <= highest_y), Status.UNREACHABLE)
         return status

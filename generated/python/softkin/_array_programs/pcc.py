@@ -73,13 +73,16 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2 = reference
         k = self.constants
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        scale_a2_from_a1 = k.scale_a2_from_a1
+        scale_a2_from_a1_squared_times_rounding = k.scale_a2_from_a1_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
@@ -93,15 +96,19 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         # z: a planar machine has none
-        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
-        one_less_cos_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a2_from_a1 = (
+            (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a2_from_a1 = (
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        )
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
-        require(status, sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1, Status.UNREACHABLE)
+        require(status, sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding, Status.UNREACHABLE)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
@@ -120,7 +127,7 @@ class ArrayPrograms(Programs):
         direction_x_a1 = arm_across_a1*y + arm_along_a1*x
         direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         direction_x_a1, direction_y_a1 = elsewhere(
-            reach > 1e-11*machine_scale,
+            reach > machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
             elsewhere_direction_x_a1,
             (ref_a1,),
@@ -169,13 +176,16 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2 = reference
         k = self.constants
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        scale_a2_from_a1 = k.scale_a2_from_a1
+        scale_a2_from_a1_squared_times_rounding = k.scale_a2_from_a1_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
@@ -189,15 +199,19 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         # z: a planar machine has none
-        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
-        one_less_cos_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a2_from_a1 = (
+            (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a2_from_a1 = (
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        )
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
-        require(status, sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1, Status.UNREACHABLE)
+        require(status, sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding, Status.UNREACHABLE)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
@@ -223,7 +237,7 @@ class ArrayPrograms(Programs):
         direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
         direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
-            reach > 1e-11*machine_scale,
+            reach > machine_scale_times_free_angle,
             (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
             elsewhere_direction_x_a1_right,
             (ref_a1,),

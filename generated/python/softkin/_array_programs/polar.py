@@ -48,9 +48,9 @@ class ArrayPrograms(Programs):
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_c) <= 1e9) & (absolute(axis_r) <= 1e9), Status.BAD_INPUT)
-        # R where the machine has no pose
-        require(status, (axis_r - offset_r >= -1e-9) & (axis_r - offset_r <= 1000000001.0), Status.IMPOSSIBLE)
         r = axis_r - offset_r
+        # R where the machine has no pose
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
         x = r*cos_c
@@ -66,7 +66,8 @@ class ArrayPrograms(Programs):
         (turn_c,) = turns
         ref_c, _ = reference
         k = self.constants
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_c = k.mid_c
         offset_c = k.offset_c
         offset_r = k.offset_r
@@ -79,7 +80,7 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         # z: a planar machine has none
-        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
@@ -91,7 +92,7 @@ class ArrayPrograms(Programs):
         direction_x_c = x  # its reference where it is free
         direction_y_c = y
         direction_x_c, direction_y_c = elsewhere(
-            radius_c > 1e-11*machine_scale,
+            radius_c > machine_scale_times_free_angle,
             (direction_x_c, direction_y_c),
             elsewhere_direction_x_c,
             (ref_c,),

@@ -53,9 +53,9 @@ class ArrayPrograms(Programs):
             (absolute(axis_c) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_z) <= 1e9),
             Status.BAD_INPUT,
         )
-        # R where the machine has no pose
-        require(status, (axis_r - offset_r >= -1e-9) & (axis_r - offset_r <= 1000000001.0), Status.IMPOSSIBLE)
         r = axis_r - offset_r
+        # R where the machine has no pose
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
         x = r*cos_c
@@ -72,7 +72,7 @@ class ArrayPrograms(Programs):
         (turn_c,) = turns
         ref_c, _, _ = reference
         k = self.constants
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_c = k.mid_c
         offset_c = k.offset_c
         offset_r = k.offset_r
@@ -96,7 +96,7 @@ class ArrayPrograms(Programs):
         direction_x_c = x  # its reference where it is free
         direction_y_c = y
         direction_x_c, direction_y_c = elsewhere(
-            radius_c > 1e-11*machine_scale,
+            radius_c > machine_scale_times_free_angle,
             (direction_x_c, direction_y_c),
             elsewhere_direction_x_c,
             (ref_c,),

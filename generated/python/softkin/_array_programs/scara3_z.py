@@ -63,15 +63,17 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         a1 = DEGREE*(axis_a1 - offset_a1)
-        cos_a1 = cos(a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
-        cos_a12 = cos(a1 + a2)
+        a1_plus_a2 = a1 + a2
         a3 = DEGREE*(axis_a3 - offset_a3)
-        cos_a123 = cos(a1 + a2 + a3)
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        cos_a123 = cos(a1_plus_a2_plus_a3)
+        cos_a1 = cos(a1)
+        cos_a12 = cos(a1_plus_a2)
         x = arm_length_1*cos_a1 + arm_length_2*cos_a12 + arm_length_3*cos_a123
+        sin_a123 = sin(a1_plus_a2_plus_a3)
         sin_a1 = sin(a1)
-        sin_a12 = sin(a1 + a2)
-        sin_a123 = sin(a1 + a2 + a3)
+        sin_a12 = sin(a1_plus_a2)
         y = arm_length_1*sin_a1 + arm_length_2*sin_a12 + arm_length_3*sin_a123
         joint_z = axis_z - offset_z
         sin_a2 = sin(a2)
@@ -91,9 +93,11 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2, ref_a3, _ = reference
         k = self.constants
         arm_length_1 = k.arm_length_1
+        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_2 = k.arm_length_2
         arm_length_3 = k.arm_length_3
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -101,7 +105,7 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_z = k.offset_z
-        scale_a2 = k.scale_a2
+        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -127,12 +131,12 @@ class ArrayPrograms(Programs):
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (arm_length_1 + arm_length_2 + reach)*(arm_length_1 + arm_length_2 - reach)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_2 + reach - arm_length_1)*(arm_length_1 + reach - arm_length_2)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*scale_a2*scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -150,7 +154,7 @@ class ArrayPrograms(Programs):
         direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
         direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
         direction_x_a1, direction_y_a1 = elsewhere(
-            reach > 1e-11*machine_scale,
+            reach > machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
             elsewhere_direction_x_a1,
             (ref_a1,),
@@ -204,9 +208,11 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2, ref_a3, _ = reference
         k = self.constants
         arm_length_1 = k.arm_length_1
+        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_2 = k.arm_length_2
         arm_length_3 = k.arm_length_3
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -214,7 +220,7 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_z = k.offset_z
-        scale_a2 = k.scale_a2
+        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -240,12 +246,12 @@ class ArrayPrograms(Programs):
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (arm_length_1 + arm_length_2 + reach)*(arm_length_1 + arm_length_2 - reach)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_2 + reach - arm_length_1)*(arm_length_1 + reach - arm_length_2)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*scale_a2*scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -270,7 +276,7 @@ class ArrayPrograms(Programs):
         direction_x_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y
         direction_y_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
-            reach > 1e-11*machine_scale,
+            reach > machine_scale_times_free_angle,
             (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
             elsewhere_direction_x_a1_right,
             (ref_a1,),

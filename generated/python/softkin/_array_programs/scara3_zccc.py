@@ -63,15 +63,17 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         a2 = DEGREE*(axis_a2 - offset_a2)
-        cos_a2 = cos(a2)
         a3 = DEGREE*(axis_a3 - offset_a3)
-        cos_a23 = cos(a2 + a3)
+        a2_plus_a3 = a2 + a3
         a4 = DEGREE*(axis_a4 - offset_a4)
-        cos_a234 = cos(a2 + a3 + a4)
+        a2_plus_a3_plus_a4 = a2_plus_a3 + a4
+        cos_a234 = cos(a2_plus_a3_plus_a4)
+        cos_a2 = cos(a2)
+        cos_a23 = cos(a2_plus_a3)
         x = link_length_1*cos_a2 + link_length_2*cos_a23 + link_length_3*cos_a234
+        sin_a234 = sin(a2_plus_a3_plus_a4)
         sin_a2 = sin(a2)
-        sin_a23 = sin(a2 + a3)
-        sin_a234 = sin(a2 + a3 + a4)
+        sin_a23 = sin(a2_plus_a3)
         y = link_length_1*sin_a2 + link_length_2*sin_a23 + link_length_3*sin_a234
         a1 = axis_a1 - offset_a1
         sin_a3 = sin(a3)
@@ -91,9 +93,11 @@ class ArrayPrograms(Programs):
         _, ref_a2, ref_a3, ref_a4 = reference
         k = self.constants
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
         mid_a4 = k.mid_a4
@@ -101,7 +105,7 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        scale_a3 = k.scale_a3
+        scale_a3_squared_times_rounding = k.scale_a3_squared_times_rounding
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         single_a4 = k.single_a4
@@ -127,12 +131,12 @@ class ArrayPrograms(Programs):
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12*scale_a3*scale_a3, Status.UNREACHABLE)
+        require(status, sine_square_a3 >= -scale_a3_squared_times_rounding, Status.UNREACHABLE)
         axis_a1 = offset_a1 + z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
@@ -151,7 +155,7 @@ class ArrayPrograms(Programs):
         direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
         direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
         direction_x_a2, direction_y_a2 = elsewhere(
-            reach > 1e-11*machine_scale,
+            reach > machine_scale_times_free_angle,
             (direction_x_a2, direction_y_a2),
             elsewhere_direction_x_a2,
             (ref_a2,),
@@ -204,9 +208,11 @@ class ArrayPrograms(Programs):
         _, ref_a2, ref_a3, ref_a4 = reference
         k = self.constants
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
         mid_a4 = k.mid_a4
@@ -214,7 +220,7 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        scale_a3 = k.scale_a3
+        scale_a3_squared_times_rounding = k.scale_a3_squared_times_rounding
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         single_a4 = k.single_a4
@@ -240,12 +246,12 @@ class ArrayPrograms(Programs):
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12*scale_a3*scale_a3, Status.UNREACHABLE)
+        require(status, sine_square_a3 >= -scale_a3_squared_times_rounding, Status.UNREACHABLE)
         axis_a1 = offset_a1 + z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
@@ -271,7 +277,7 @@ class ArrayPrograms(Programs):
         direction_x_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y
         direction_y_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
         direction_x_a2_right, direction_y_a2_right, direction_x_a2_left, direction_y_a2_left = elsewhere(
-            reach > 1e-11*machine_scale,
+            reach > machine_scale_times_free_angle,
             (direction_x_a2_right, direction_y_a2_right, direction_x_a2_left, direction_y_a2_left),
             elsewhere_direction_x_a2_right,
             (ref_a2,),

@@ -45,15 +45,14 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self.constants
-        flange_down = k.flange_down
-        gear_coupling = k.gear_coupling
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        pitch_zc = k.pitch_zc
+        part_of_constant = k.part_of_constant
+        part_of_z = k.part_of_z
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -67,24 +66,26 @@ class ArrayPrograms(Programs):
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
-        cos_a12 = cos(a1 + a2)
+        a1_plus_a2 = a1 + a2
+        cos_a12 = cos(a1_plus_a2)
         x = link_length_1*cos_a1 + link_length_2*cos_a12
         sin_a1 = sin(a1)
-        sin_a12 = sin(a1 + a2)
+        sin_a12 = sin(a1_plus_a2)
         y = link_length_1*sin_a1 + link_length_2*sin_a12
         a3 = axis_a3 - offset_a3
         a4 = DEGREE*(axis_a4 - offset_a4)
-        z = a3 + a4*gear_coupling/DEGREE - a4*pitch_zc/(360.0*DEGREE)
-        cos_a124 = cos(a1 + a2 + a4)
-        sin_a124 = sin(a1 + a2 + a4)
+        z = a3 + a4*part_of_z
+        a1_plus_a2_plus_a4 = a1_plus_a2 + a4
+        cos_a124 = cos(a1_plus_a2_plus_a4)
+        sin_a124 = sin(a1_plus_a2_plus_a4)
         sin_a2 = sin(a2)
         return (
             (
                 (x, y, z),
                 (
-                    (cos_a124, -select(flange_down, -1.0, 1.0)*sin_a124, 0.0),
-                    (sin_a124, select(flange_down, -1.0, 1.0)*cos_a124, 0.0),
-                    (0.0, 0.0, select(flange_down, -1.0, 1.0)),
+                    (cos_a124, -part_of_constant*sin_a124, 0.0),
+                    (sin_a124, part_of_constant*cos_a124, 0.0),
+                    (0.0, 0.0, part_of_constant),
                 ),
                 (sin_a2,),
             ),
@@ -102,10 +103,11 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self.constants
         flange_down = k.flange_down
-        gear_coupling = k.gear_coupling
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a4 = k.mid_a4
@@ -113,8 +115,8 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        pitch_zc = k.pitch_zc
-        scale_a2 = k.scale_a2
+        part_of_z = k.part_of_z
+        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a4 = k.single_a4
@@ -147,12 +149,12 @@ class ArrayPrograms(Programs):
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*scale_a2*scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -170,7 +172,7 @@ class ArrayPrograms(Programs):
         direction_x_a1 = arm_across_a1*y + arm_along_a1*x
         direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         direction_x_a1, direction_y_a1 = elsewhere(
-            reach > 1e-11*machine_scale,
+            reach > machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
             elsewhere_direction_x_a1,
             (ref_a1,),
@@ -189,7 +191,7 @@ class ArrayPrograms(Programs):
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
         axis_a4 = nearest_period(offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE, near_a4)
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc/(360.0*DEGREE) - a4*gear_coupling/DEGREE  # a3: affine in the z equation
+        a3 = z - a4*part_of_z  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
 
@@ -226,10 +228,11 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self.constants
         flange_down = k.flange_down
-        gear_coupling = k.gear_coupling
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a4 = k.mid_a4
@@ -237,8 +240,8 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        pitch_zc = k.pitch_zc
-        scale_a2 = k.scale_a2
+        part_of_z = k.part_of_z
+        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a4 = k.single_a4
@@ -271,12 +274,12 @@ class ArrayPrograms(Programs):
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*scale_a2*scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -301,7 +304,7 @@ class ArrayPrograms(Programs):
         direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
         direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
-            reach > 1e-11*machine_scale,
+            reach > machine_scale_times_free_angle,
             (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
             elsewhere_direction_x_a1_right,
             (ref_a1,),
@@ -320,8 +323,7 @@ class ArrayPrograms(Programs):
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
         axis_a4_right = nearest_period(offset_a4 + (angle_heading - angle_a1_right - angle_a2_right)/DEGREE, near_a4)
         a4_right = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        # a3: affine in the z equation
-        a3_right = z + a4_right*pitch_zc/(360.0*DEGREE) - a4_right*gear_coupling/DEGREE
+        a3_right = z - a4_right*part_of_z  # a3: affine in the z equation
         axis_a3_right = a3_right + offset_a3
         angle_a1_left = atan2(direction_y_a1_left, direction_x_a1_left)
         axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
@@ -330,7 +332,7 @@ class ArrayPrograms(Programs):
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
         axis_a4_left = nearest_period(offset_a4 + (angle_heading - angle_a1_left - angle_a2_left)/DEGREE, near_a4)
         a4_left = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3_left = z + a4_left*pitch_zc/(360.0*DEGREE) - a4_left*gear_coupling/DEGREE  # a3: affine in the z equation
+        a3_left = z - a4_left*part_of_z  # a3: affine in the z equation
         axis_a3_left = a3_left + offset_a3
         return (
             ((axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right), status),

@@ -63,17 +63,19 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         a1 = DEGREE*(axis_a1 - offset_a1)
-        cos_a1 = cos(a1)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         a2 = motor_a2 + a1*coupling_12
-        cos_a12 = cos(a1 + a2)
+        a1_plus_a2 = a1 + a2
         motor_a3 = DEGREE*(axis_a3 - offset_a3)
         a3 = motor_a3 + a1*coupling_13 + coupling_23*motor_a2
-        cos_a123 = cos(a1 + a2 + a3)
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        cos_a123 = cos(a1_plus_a2_plus_a3)
+        cos_a1 = cos(a1)
+        cos_a12 = cos(a1_plus_a2)
         x = link_length_1*cos_a1 + link_length_2*cos_a12 + link_length_3*cos_a123
+        sin_a123 = sin(a1_plus_a2_plus_a3)
         sin_a1 = sin(a1)
-        sin_a12 = sin(a1 + a2)
-        sin_a123 = sin(a1 + a2 + a3)
+        sin_a12 = sin(a1_plus_a2)
         y = link_length_1*sin_a1 + link_length_2*sin_a12 + link_length_3*sin_a123
         sin_a2 = sin(a2)
         return (
@@ -95,16 +97,20 @@ class ArrayPrograms(Programs):
         coupling_13 = k.coupling_13
         coupling_23 = k.coupling_23
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        scale_a2 = k.scale_a2
+        part_of_open_a2 = k.part_of_open_a2
+        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -124,7 +130,7 @@ class ArrayPrograms(Programs):
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # z: a planar machine has none
-        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
         cos_heading = heading_along/heading_divisor
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
@@ -132,12 +138,12 @@ class ArrayPrograms(Programs):
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*scale_a2*scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -155,7 +161,7 @@ class ArrayPrograms(Programs):
         direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
         direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
         direction_x_a1, direction_y_a1 = elsewhere(
-            reach > 1e-11*machine_scale,
+            reach > machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
             elsewhere_direction_x_a1,
             (ref_a1,),
@@ -166,35 +172,38 @@ class ArrayPrograms(Programs):
         axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
         angle_a2 = atan2(sin_a2, cos_a2)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
+        part_of_axis_a2 = offset_a2 - motor_a1*part_of_open_a2
 
-        def elsewhere_near_a2(motor_a1: Real, ref_a1: Real, ref_a2: Real, single_a2: Truth) -> Reals:
+        def elsewhere_near_a2(part_of_axis_a2: Real, ref_a1: Real, ref_a2: Real, single_a2: Truth) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
-            # A2: where its turn is open
-            open_a2 = select(single_a2, mid_a2, offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE)
+            open_a2 = select(single_a2, mid_a2, part_of_axis_a2 + free_a2/DEGREE)  # A2: where its turn is open
             near_a2 = open_a2
             return (near_a2,)
 
         near_a2 = 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2)
-        (near_a2,) = elsewhere(turn_a2 != 0, (near_a2,), elsewhere_near_a2, (motor_a1, ref_a1, ref_a2, single_a2))
-        axis_a2 = nearest_period(offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE, near_a2)  # A2: its turn
+        (near_a2,) = elsewhere(
+            turn_a2 != 0,
+            (near_a2,),
+            elsewhere_near_a2,
+            (part_of_axis_a2, ref_a1, ref_a2, single_a2),
+        )
+        axis_a2 = nearest_period(part_of_axis_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
         angle_heading = atan2(sin_heading, cos_heading)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
+        part_of_axis_a3 = -coupling_13*motor_a1 - coupling_23*motor_a2
 
         def elsewhere_near_a3(
-            motor_a1: Real, motor_a2: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real, single_a3: Truth,
+            part_of_axis_a3: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real, single_a3: Truth,
         ) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
 
-            def elsewhere_open_a3(
-                free_a1: Real, motor_a1: Real, motor_a2: Real, ref_a3: Real, ref_motor_a2: Real,
-            ) -> Reals:
+            def elsewhere_open_a3(free_a1: Real, part_of_axis_a3: Real, ref_a3: Real, ref_motor_a2: Real) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                # A3: where its turn is open
-                open_a3 = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE
+                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE  # A3: where its turn is open
                 return (open_a3,)
 
             open_a3 = mid_a3  # A3: where its turn is open
@@ -202,7 +211,7 @@ class ArrayPrograms(Programs):
                 single_a3,
                 (open_a3,),
                 elsewhere_open_a3,
-                (free_a1, motor_a1, motor_a2, ref_a3, ref_motor_a2),
+                (free_a1, part_of_axis_a3, ref_a3, ref_motor_a2),
             )
             near_a3 = open_a3
             return (near_a3,)
@@ -212,16 +221,10 @@ class ArrayPrograms(Programs):
             turn_a3 != 0,
             (near_a3,),
             elsewhere_near_a3,
-            (motor_a1, motor_a2, ref_a1, ref_a2, ref_a3, single_a3),
+            (part_of_axis_a3, ref_a1, ref_a2, ref_a3, single_a3),
         )
         # a3: what the sum a123 leaves; A3: its turn
-        axis_a3 = nearest_period(
-            (
-                offset_a3 + (angle_heading - angle_a1 - angle_a2)/DEGREE
-                - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE
-            ),
-            near_a3,
-        )
+        axis_a3 = nearest_period(offset_a3 + (angle_heading + part_of_axis_a3 - angle_a1 - angle_a2)/DEGREE, near_a3)
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -277,16 +280,20 @@ class ArrayPrograms(Programs):
         coupling_13 = k.coupling_13
         coupling_23 = k.coupling_23
         link_length_1 = k.link_length_1
+        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
-        machine_scale = k.machine_scale
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_plane = k.machine_scale_times_plane
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        scale_a2 = k.scale_a2
+        part_of_open_a2 = k.part_of_open_a2
+        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -306,7 +313,7 @@ class ArrayPrograms(Programs):
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # z: a planar machine has none
-        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
         cos_heading = heading_along/heading_divisor
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
@@ -314,12 +321,12 @@ class ArrayPrograms(Programs):
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*scale_a2*scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
@@ -344,7 +351,7 @@ class ArrayPrograms(Programs):
         direction_x_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y
         direction_y_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
-            reach > 1e-11*machine_scale,
+            reach > machine_scale_times_free_angle,
             (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
             elsewhere_direction_x_a1_right,
             (ref_a1,),
@@ -355,22 +362,24 @@ class ArrayPrograms(Programs):
         axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: its turn
         angle_a2_right = atan2(sin_a2_right, cos_a2)
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
+        part_of_axis_a2_right = offset_a2 - motor_a1_right*part_of_open_a2
         angle_a1_left = atan2(direction_y_a1_left, direction_x_a1_left)
         axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
+        part_of_axis_a2_left = offset_a2 - motor_a1_left*part_of_open_a2
 
         def elsewhere_near_a2_right(
-            motor_a1_left: Real, motor_a1_right: Real, ref_a1: Real, ref_a2: Real, single_a2: Truth,
+            part_of_axis_a2_left: Real, part_of_axis_a2_right: Real, ref_a1: Real, ref_a2: Real, single_a2: Truth,
         ) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
 
             def elsewhere_open_a2_right(
-                free_a1: Real, motor_a1_left: Real, motor_a1_right: Real, ref_motor_a2: Real,
+                free_a1: Real, part_of_axis_a2_left: Real, part_of_axis_a2_right: Real, ref_motor_a2: Real,
             ) -> Reals:
                 free_a2 = ref_motor_a2 + coupling_12*free_a1
-                open_a2_right = offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: where its turn is open
-                open_a2_left = offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: where its turn is open
+                open_a2_right = part_of_axis_a2_right + free_a2/DEGREE  # A2: where its turn is open
+                open_a2_left = part_of_axis_a2_left + free_a2/DEGREE  # A2: where its turn is open
                 return (open_a2_right, open_a2_left)
 
             open_a2_right = mid_a2  # A2: where its turn is open
@@ -379,7 +388,7 @@ class ArrayPrograms(Programs):
                 single_a2,
                 (open_a2_right, open_a2_left),
                 elsewhere_open_a2_right,
-                (free_a1, motor_a1_left, motor_a1_right, ref_motor_a2),
+                (free_a1, part_of_axis_a2_left, part_of_axis_a2_right, ref_motor_a2),
             )
             near_a2_right = open_a2_right
             near_a2_left = open_a2_left
@@ -391,38 +400,31 @@ class ArrayPrograms(Programs):
             turn_a2 != 0,
             (near_a2_right, near_a2_left),
             elsewhere_near_a2_right,
-            (motor_a1_left, motor_a1_right, ref_a1, ref_a2, single_a2),
+            (part_of_axis_a2_left, part_of_axis_a2_right, ref_a1, ref_a2, single_a2),
         )
-        # A2: its turn
-        axis_a2_right = nearest_period(
-            offset_a2 + angle_a2_right/DEGREE - coupling_12*motor_a1_right/DEGREE, near_a2_right,
-        )
+        axis_a2_right = nearest_period(part_of_axis_a2_right + angle_a2_right/DEGREE, near_a2_right)  # A2: its turn
         angle_heading = atan2(sin_heading, cos_heading)
         motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
+        part_of_axis_a3_right = -coupling_13*motor_a1_right - coupling_23*motor_a2_right
         angle_a2_left = atan2(-sin_a2_right, cos_a2)
-        # A2: its turn
-        axis_a2_left = nearest_period(
-            offset_a2 + angle_a2_left/DEGREE - coupling_12*motor_a1_left/DEGREE, near_a2_left,
-        )
+        axis_a2_left = nearest_period(part_of_axis_a2_left + angle_a2_left/DEGREE, near_a2_left)  # A2: its turn
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
+        part_of_axis_a3_left = -coupling_13*motor_a1_left - coupling_23*motor_a2_left
 
         def elsewhere_near_a3_right(
-            motor_a1_left: Real, motor_a1_right: Real, motor_a2_left: Real, motor_a2_right: Real, ref_a1: Real,
-            ref_a2: Real, ref_a3: Real, single_a3: Truth,
+            part_of_axis_a3_left: Real, part_of_axis_a3_right: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real,
+            single_a3: Truth,
         ) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
 
             def elsewhere_open_a3_right(
-                free_a1: Real, motor_a1_left: Real, motor_a1_right: Real, motor_a2_left: Real, motor_a2_right: Real,
-                ref_a3: Real, ref_motor_a2: Real,
+                free_a1: Real, part_of_axis_a3_left: Real, part_of_axis_a3_right: Real, ref_a3: Real, ref_motor_a2: Real,
             ) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                # A3: where its turn is open
-                open_a3_right = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE
-                # A3: where its turn is open
-                open_a3_left = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE
+                open_a3_right = offset_a3 + (free_a3 + part_of_axis_a3_right)/DEGREE  # A3: where its turn is open
+                open_a3_left = offset_a3 + (free_a3 + part_of_axis_a3_left)/DEGREE  # A3: where its turn is open
                 return (open_a3_right, open_a3_left)
 
             open_a3_right = mid_a3  # A3: where its turn is open
@@ -431,7 +433,7 @@ class ArrayPrograms(Programs):
                 single_a3,
                 (open_a3_right, open_a3_left),
                 elsewhere_open_a3_right,
-                (free_a1, motor_a1_left, motor_a1_right, motor_a2_left, motor_a2_right, ref_a3, ref_motor_a2),
+                (free_a1, part_of_axis_a3_left, part_of_axis_a3_right, ref_a3, ref_motor_a2),
             )
             near_a3_right = open_a3_right
             near_a3_left = open_a3_left
@@ -443,23 +445,16 @@ class ArrayPrograms(Programs):
             turn_a3 != 0,
             (near_a3_right, near_a3_left),
             elsewhere_near_a3_right,
-            (motor_a1_left, motor_a1_right, motor_a2_left, motor_a2_right, ref_a1, ref_a2, ref_a3, single_a3),
+            (part_of_axis_a3_left, part_of_axis_a3_right, ref_a1, ref_a2, ref_a3, single_a3),
         )
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_right = nearest_period(
-            (
-                offset_a3 + (angle_heading - angle_a1_right - angle_a2_right)/DEGREE
-                - (coupling_13*motor_a1_right + coupling_23*motor_a2_right)/DEGREE
-            ),
+            offset_a3 + (angle_heading + part_of_axis_a3_right - angle_a1_right - angle_a2_right)/DEGREE,
             near_a3_right,
         )
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_left = nearest_period(
-            (
-                offset_a3 + (angle_heading - angle_a1_left - angle_a2_left)/DEGREE
-                - (coupling_13*motor_a1_left + coupling_23*motor_a2_left)/DEGREE
-            ),
-            near_a3_left,
+            offset_a3 + (angle_heading + part_of_axis_a3_left - angle_a1_left - angle_a2_left)/DEGREE, near_a3_left,
         )
         return (
             ((axis_a1_right, axis_a2_right, axis_a3_right), status),

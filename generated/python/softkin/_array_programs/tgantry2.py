@@ -30,8 +30,8 @@ class ArrayPrograms(Programs):
         require(status, (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9), Status.BAD_INPUT)
         a = axis_a - offset_a
         b = axis_b - offset_b
-        x = 0.5*a + 0.5*b
-        y = 0.5*b - 0.5*a
+        x = 0.5*(a + b)
+        y = 0.5*(b - a)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
@@ -40,14 +40,14 @@ class ArrayPrograms(Programs):
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        machine_scale = k.machine_scale
+        machine_scale_times_plane = k.machine_scale_times_plane
         offset_a = k.offset_a
         offset_b = k.offset_b
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
-        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
         b = x + y
@@ -75,10 +75,10 @@ class ArrayPrograms(Programs):
         require(status, (axis_b >= lowest_b) & (axis_b <= highest_b), Status.UNREACHABLE)
         a = axis_a - offset_a
         b = axis_b - offset_b
-        value_x = 0.5*a + 0.5*b  # X of the carriage
+        value_x = 0.5*(a + b)  # X of the carriage
         # limits of X of the carriage
         require(status, (value_x >= lowest_x) & (value_x <= highest_x), Status.UNREACHABLE)
-        value_y = 0.5*b - 0.5*a  # Y of the carriage
+        value_y = 0.5*(b - a)  # Y of the carriage
         # limits of Y of the carriage
         require(status, (value_y >= lowest_y) & (value_y <= highest_y), Status.UNREACHABLE)
         return status

@@ -35,8 +35,8 @@ class ArrayPrograms(Programs):
         )
         a = axis_a - offset_a
         b = axis_b - offset_b
-        x = 0.5*a + 0.5*b
-        y = 0.5*b - 0.5*a
+        x = 0.5*(a + b)
+        y = 0.5*(b - a)
         joint_z = axis_z - offset_z
         return ((x, y, joint_z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
@@ -84,10 +84,10 @@ class ArrayPrograms(Programs):
         require(status, (axis_z >= lowest_z) & (axis_z <= highest_z), Status.UNREACHABLE)
         a = axis_a - offset_a
         b = axis_b - offset_b
-        value_x = 0.5*a + 0.5*b  # X of the carriage
+        value_x = 0.5*(a + b)  # X of the carriage
         # limits of X of the carriage
         require(status, (value_x >= lowest_x) & (value_x <= highest_x), Status.UNREACHABLE)
-        value_y = 0.5*b - 0.5*a  # Y of the carriage
+        value_y = 0.5*(b - a)  # Y of the carriage
         # limits of Y of the carriage
         require(status, (value_y >= lowest_y) & (value_y <= highest_y), Status.UNREACHABLE)
         return status

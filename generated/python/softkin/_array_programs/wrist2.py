@@ -49,7 +49,7 @@ class ArrayPrograms(OrientationPrograms):
         roll_axis_offset_x = k.roll_axis_offset_x
         roll_axis_offset_y = k.roll_axis_offset_y
         roll_axis_offset_z = k.roll_axis_offset_z
-        tool_length = k.tool_length
+        tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
         status = passed(axes)
         # numbers of reasonable size
@@ -57,22 +57,25 @@ class ArrayPrograms(OrientationPrograms):
         a = DEGREE*(axis_a - offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
-        x_at_b = roll_axis_offset_x*cos_a - roll_axis_offset_y*sin_a
         b = DEGREE*(axis_b - offset_b)
         sin_b = sin(b)
-        r13_at_b = tool_side*cos_a*sin_b
-        x = x_at_b + r13_at_b*tool_length*tool_side
-        y_at_b = roll_axis_offset_y*cos_a + roll_axis_offset_x*sin_a
-        r23_at_b = tool_side*sin_a*sin_b
-        y = y_at_b + r23_at_b*tool_length*tool_side
-        cos_b = cos(b)
-        z = roll_axis_offset_z + tool_length*tool_side*cos_b
-        r11_at_b = cos_a*cos_b
-        r12 = -sin_a
-        r21_at_b = cos_b*sin_a
         r31_at_b = -tool_side*sin_b
+        r13_at_b = -r31_at_b*cos_a
+        x_at_b = roll_axis_offset_x*cos_a - roll_axis_offset_y*sin_a
+        x = x_at_b + r13_at_b*tool_length_times_tool_side
+        r23_at_b = -r31_at_b*sin_a
+        y_at_b = roll_axis_offset_y*cos_a + roll_axis_offset_x*sin_a
+        y = y_at_b + r23_at_b*tool_length_times_tool_side
+        cos_b = cos(b)
+        z = roll_axis_offset_z + tool_length_times_tool_side*cos_b
+        r11_at_b = cos_a*cos_b
+        r21_at_b = cos_b*sin_a
         return (
-            ((x, y, z), ((r11_at_b, r12, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)), (sin_b,)),
+            (
+                (x, y, z),
+                ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)),
+                (sin_b,),
+            ),
             status,
         )
 
@@ -145,8 +148,7 @@ class ArrayPrograms(OrientationPrograms):
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self.constants
         roll_axis_offset_z = k.roll_axis_offset_z
-        tool_length = k.tool_length
-        tool_side = k.tool_side
+        tool_length_times_tool_side = k.tool_length_times_tool_side
         status = passed(rotation[0])
         # numbers of reasonable size
         require(
@@ -161,9 +163,9 @@ class ArrayPrograms(OrientationPrograms):
         flange_along = flange_axis_z*roll_axis_offset_z  # what the flange holds, along the axis that it turns about
         return (
             (
-                base_axis_x*flange_along + r13*tool_length*tool_side,
-                base_axis_y*flange_along + r23*tool_length*tool_side,
-                base_axis_z*flange_along + r33*tool_length*tool_side,
+                base_axis_x*flange_along + r13*tool_length_times_tool_side,
+                base_axis_y*flange_along + r23*tool_length_times_tool_side,
+                base_axis_z*flange_along + r33*tool_length_times_tool_side,
             ),
             status,
         )

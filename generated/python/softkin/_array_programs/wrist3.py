@@ -57,13 +57,13 @@ class ArrayPrograms(OrientationPrograms):
             (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_c) <= 1e9),
             Status.BAD_INPUT,
         )
-        a = DEGREE*(axis_a - offset_a)
-        cos_a = cos(a)
         b = DEGREE*(axis_b - offset_b)
         sin_b = sin(b)
+        a = DEGREE*(axis_a - offset_a)
+        cos_a = cos(a)
         r13_at_b = -cos_a*sin_b
-        sin_a = sin(a)
         cos_b = cos(b)
+        sin_a = sin(a)
         r11_at_b = cos_a*cos_b
         c = DEGREE*(axis_c - offset_c)
         sin_c = sin(c)

@@ -55,15 +55,15 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     size_q1_for_q3 = k.size_q1_for_q3
-    machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
-    machine_scale_times_free_angle = 1e-11*machine_scale
-    a2_squared_plus_a3_squared = a2*a2 + a3*a3
-    size_q1_for_q3_times_rounding = 1e-12*size_q1_for_q3
+    machine_scale_squared_times_plane_2 = 1e-6*machine_scale*machine_scale
+    machine_scale_times_free_angle_2 = 1e-11*machine_scale
+    a2_squared_plus_a3_squared_2 = a2*a2 + a3*a3
+    size_q1_for_q3_times_rounding_2 = 1e-12*size_q1_for_q3
     share_of_size_q1_for_q3 = 1.000000001*size_q1_for_q3
-    scale_q3_squared_times_rounding = 1e-12*scale_q3*scale_q3
+    scale_q3_squared_times_rounding_2 = 1e-12*scale_q3*scale_q3
     offset_a5_times_2 = 2.0*offset_a5
-    a2_plus_a3 = a2 + a3
-    a2_minus_a3 = a2 - a3
+    a2_plus_a3_2 = a2 + a3
+    a2_minus_a3_2 = a2 - a3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -83,7 +83,7 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
@@ -94,7 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
                 return 8*(3,)
             ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
+        if distance_q1 > machine_scale_times_free_angle_2:
             d4_times_wrist_y = d4*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
             divisor_q1 = distance_q1*distance_q1
@@ -139,7 +139,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
         # kept where the rest can be reached
         # what the unknown links must span
@@ -174,7 +174,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
@@ -247,7 +247,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sine_square_q3_down = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(sum_q3)
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -297,7 +297,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
         # kept where the rest can be reached
         if abs(value_q6_of_q3) <= size_q1_for_q3:
@@ -327,7 +327,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
@@ -400,7 +400,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sine_square_q3_up = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(sum_q3)
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -449,7 +449,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4_left_down_up = nearest_period(axis_a4_left_down_up, open_a4)
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1:
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6 and sine_square_q3_down >= -scale_q3_squared_times_rounding:
+            if axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6 and sine_square_q3_down >= -scale_q3_squared_times_rounding_2:
                 refusal_left_up_down = (
                     0
                     if (axis_a2_left_up_down >= lowest_a2) and (axis_a3_left_up_down >= lowest_a3) and (axis_a4_left_up_down >= lowest_a4) and (
@@ -468,7 +468,7 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_left_up_down = 3
                 refusal_left_down_down = 3
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6 and sine_square_q3_up >= -scale_q3_squared_times_rounding:
+            if axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6 and sine_square_q3_up >= -scale_q3_squared_times_rounding_2:
                 refusal_left_up_up = (
                     0
                     if (axis_a2_left_up_up >= lowest_a2) and (axis_a3_left_up_up >= lowest_a3) and (axis_a4_left_up_up >= lowest_a4) and (
@@ -519,7 +519,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
         # kept where the rest can be reached
         # what the unknown links must span
@@ -554,7 +554,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
@@ -627,7 +627,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sine_square_q3_down = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(sum_q3)
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -671,7 +671,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
         # kept where the rest can be reached
         if abs(value_q6_of_q3) <= size_q1_for_q3:
@@ -701,7 +701,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
@@ -774,7 +774,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sine_square_q3_up = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(sum_q3)
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -823,7 +823,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4_right_down_up = nearest_period(axis_a4_right_down_up, open_a4)
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6 and sine_square_q3_down >= -scale_q3_squared_times_rounding:
+            if axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6 and sine_square_q3_down >= -scale_q3_squared_times_rounding_2:
                 refusal_right_up_down = (
                     0
                     if (axis_a2_right_up_down >= lowest_a2) and (axis_a3_right_up_down >= lowest_a3) and (axis_a4_right_up_down >= lowest_a4) and (
@@ -842,7 +842,7 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_right_up_down = 3
                 refusal_right_down_down = 3
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6 and sine_square_q3_up >= -scale_q3_squared_times_rounding:
+            if axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6 and sine_square_q3_up >= -scale_q3_squared_times_rounding_2:
                 refusal_right_up_up = (
                     0
                     if (axis_a2_right_up_up >= lowest_a2) and (axis_a3_right_up_up >= lowest_a3) and (axis_a4_right_up_up >= lowest_a4) and (
@@ -941,7 +941,7 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
@@ -952,7 +952,7 @@ def unrolled(k: Constants) -> Unrolled:
                 return 8*(None,)
             ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
+        if distance_q1 > machine_scale_times_free_angle_2:
             d4_times_wrist_y = d4*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
             divisor_q1 = distance_q1*distance_q1
@@ -997,7 +997,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
         # kept where the rest can be reached
         # what the unknown links must span
@@ -1032,7 +1032,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
@@ -1101,13 +1101,13 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_left_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3  # q3: out of reach
+        refusal_left_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*RADIAN
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
             angle_q2_left_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -1136,7 +1136,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
         # kept where the rest can be reached
         if abs(value_q6_of_q3) <= size_q1_for_q3:
@@ -1166,7 +1166,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
@@ -1235,12 +1235,12 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_left_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3  # q3: out of reach
+        refusal_left_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
             angle_q2_left_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -1288,7 +1288,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
         # kept where the rest can be reached
         # what the unknown links must span
@@ -1323,7 +1323,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
@@ -1392,13 +1392,13 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_right_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3  # q3: out of reach
+        refusal_right_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*RADIAN
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
             angle_q2_right_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -1427,7 +1427,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
         # kept where the rest can be reached
         if abs(value_q6_of_q3) <= size_q1_for_q3:
@@ -1457,7 +1457,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
@@ -1526,12 +1526,12 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_right_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3  # q3: out of reach
+        refusal_right_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
             angle_q2_right_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
@@ -1631,7 +1631,7 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
@@ -1642,7 +1642,7 @@ def unrolled(k: Constants) -> Unrolled:
                 return None
             ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
+        if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1*distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/divisor_q1
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/divisor_q1
@@ -1676,7 +1676,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
         # kept where the rest can be reached
         # what the unknown links must span
@@ -1699,7 +1699,7 @@ def unrolled(k: Constants) -> Unrolled:
                 across_q6_of_q3 = 2.0*(d5*r32*cos_q5)*wrist_x_from_q1_fixed + 2.0*(d5*r31)*wrist_y_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3 + along_q6_of_q3*cos_q6_before_q6_of_q3 - value_q6_of_q3
                     )
@@ -1759,17 +1759,17 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        if not (sine_square_q3 >= -scale_q3_squared_times_rounding):
+        if not (sine_square_q3 >= -scale_q3_squared_times_rounding_2):
             return None
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(sum_q3)
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_q2 = arctan2(wrist_y_from_q1, wrist_x_from_q1) - arctan2(a3*sin_q3, a2 + a3*cos_q3)
         else:
             angle_q2 = (ref_a2 - offset_a2)*DEGREE

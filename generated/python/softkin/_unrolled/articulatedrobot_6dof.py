@@ -56,14 +56,14 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     swing_scale_q3 = k.swing_scale_q3
-    machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
-    machine_scale_times_free_angle = 1e-11*machine_scale
+    machine_scale_squared_times_plane_2 = 1e-6*machine_scale*machine_scale
+    machine_scale_times_free_angle_2 = 1e-11*machine_scale
     angle_of_a3_by_effective_q3 = arctan2(d4/effective_q3 + 0.0, a3/effective_q3 + 0.0)
     offset_a6_plus_180 = 180.0 + offset_a6
-    swing_scale_q3_squared_times_rounding = 1e-12*swing_scale_q3*swing_scale_q3
+    swing_scale_q3_squared_times_rounding_2 = 1e-12*swing_scale_q3*swing_scale_q3
     offset_a5_times_2 = 2.0*offset_a5
-    a2_plus_effective_q3 = a2 + effective_q3
-    a2_minus_effective_q3 = a2 - effective_q3
+    a2_plus_effective_q3_2 = a2 + effective_q3
+    a2_minus_effective_q3_2 = a2 - effective_q3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -83,7 +83,7 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
@@ -94,7 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
                 return 8*(3,)
             ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
+        if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_wrist_y = d3*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
             divisor_q1 = distance_q1*distance_q1
@@ -125,7 +125,7 @@ def unrolled(k: Constants) -> Unrolled:
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3 + 0.0, a2 + effective_q3*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -274,7 +274,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_front_up_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_front_up_up - open_a6 < 179.999999999:
             axis_a6_front_up_up = nearest_period(axis_a6_front_up_up, open_a6)
-        if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and sine_square_q3 >= -swing_scale_q3_squared_times_rounding:
+        if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and sine_square_q3 >= -swing_scale_q3_squared_times_rounding_2:
             # limits of A4, limits of A5, limits of A6
             if axis_a2_front_down >= lowest_a2 and axis_a3_front_down >= lowest_a3 and axis_a2_front_down <= highest_a2 and axis_a3_front_down <= highest_a3:
                 refusal_front_down_down = (
@@ -332,7 +332,7 @@ def unrolled(k: Constants) -> Unrolled:
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3 + 0.0, a2 + effective_q3*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -475,7 +475,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_back_up_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_back_up_up - open_a6 < 179.999999999:
             axis_a6_back_up_up = nearest_period(axis_a6_back_up_up, open_a6)
-        if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and sine_square_q3 >= -swing_scale_q3_squared_times_rounding:
+        if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and sine_square_q3 >= -swing_scale_q3_squared_times_rounding_2:
             # limits of A4, limits of A5, limits of A6
             if axis_a2_back_down >= lowest_a2 and axis_a3_back_down >= lowest_a3 and axis_a2_back_down <= highest_a2 and axis_a3_back_down <= highest_a3:
                 refusal_back_down_down = (
@@ -595,7 +595,7 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
@@ -615,9 +615,9 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_front = 0 if sine_square_q3 >= -swing_scale_q3_squared_times_rounding else 3  # q3: out of reach
+        refusal_front = 0 if sine_square_q3 >= -swing_scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
+        if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_wrist_y = d3*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
             divisor_q1 = distance_q1*distance_q1
@@ -638,7 +638,7 @@ def unrolled(k: Constants) -> Unrolled:
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3, a2 + effective_q3*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -769,13 +769,13 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_back = 0 if sine_square_q3 >= -swing_scale_q3_squared_times_rounding else 3  # q3: out of reach
+        refusal_back = 0 if sine_square_q3 >= -swing_scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3, a2 + effective_q3*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -974,7 +974,7 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
@@ -987,15 +987,16 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)  # 1 - cosine, times the scale
+        # 1 - cosine, times the scale
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        if not (sine_square_q3 >= -swing_scale_q3_squared_times_rounding):
+        if not (sine_square_q3 >= -swing_scale_q3_squared_times_rounding_2):
             return None
         # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
+        if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1*distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/divisor_q1
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/divisor_q1
@@ -1007,7 +1008,7 @@ def unrolled(k: Constants) -> Unrolled:
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_q2 = (
                 arctan2(-effective_q3*sin_swing_q3, a2 + effective_q3*cos_swing_q3)
                 - arctan2(wrist_x_from_q1, wrist_y_from_q1)

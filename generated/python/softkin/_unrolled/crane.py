@@ -27,7 +27,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_r = k.offset_r
     offset_theta = k.offset_theta
     single_theta = k.single_theta
-    machine_scale_times_free_angle = 1e-11*machine_scale
+    machine_scale_times_free_angle_2 = 1e-11*machine_scale
     no_offsets = not any((offset_phi, offset_r, offset_theta,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -42,7 +42,7 @@ def unrolled(k: Constants) -> Unrolled:
             return (2,)
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         # its reference where it is free
-        if radius_theta > machine_scale_times_free_angle:
+        if radius_theta > machine_scale_times_free_angle_2:
             direction_x_theta = x
             direction_y_theta = y
         else:
@@ -62,7 +62,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (axis_r >= lowest_r and axis_r <= highest_r):
             return (3,)
         # its reference where it is free
-        if radius_phi > machine_scale_times_free_angle:
+        if radius_phi > machine_scale_times_free_angle_2:
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
@@ -84,7 +84,7 @@ def unrolled(k: Constants) -> Unrolled:
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         # its reference where it is free
-        if radius_theta > machine_scale_times_free_angle:
+        if radius_theta > machine_scale_times_free_angle_2:
             direction_x_theta = x
             direction_y_theta = y
         else:
@@ -92,7 +92,7 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
         # its reference where it is free
-        if radius_phi > machine_scale_times_free_angle:
+        if radius_phi > machine_scale_times_free_angle_2:
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
@@ -113,7 +113,7 @@ def unrolled(k: Constants) -> Unrolled:
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         # its reference where it is free
-        if radius_theta > machine_scale_times_free_angle:
+        if radius_theta > machine_scale_times_free_angle_2:
             direction_x_theta = x
             direction_y_theta = y
         else:
@@ -121,7 +121,7 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
         # its reference where it is free
-        if radius_phi > machine_scale_times_free_angle:
+        if radius_phi > machine_scale_times_free_angle_2:
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:

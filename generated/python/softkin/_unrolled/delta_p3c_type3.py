@@ -52,22 +52,22 @@ def unrolled(k: Constants) -> Unrolled:
     tcp_radius_3 = k.tcp_radius_3
     constant_part = base_radius_1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
     constant_part_2 = base_radius_1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
-    inner_arm_1_times_shortest_link = 1e-9*inner_arm_1
+    inner_arm_1_times_shortest_link_2 = 1e-9*inner_arm_1
     inner_arm_1_times_2 = 2.0*inner_arm_1
     constant_part_3 = base_radius_2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
     constant_part_4 = base_radius_2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
-    inner_arm_2_times_shortest_link = 1e-9*inner_arm_2
+    inner_arm_2_times_shortest_link_2 = 1e-9*inner_arm_2
     inner_arm_2_times_2 = 2.0*inner_arm_2
     constant_part_5 = base_radius_3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
     constant_part_6 = base_radius_3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
-    inner_arm_3_times_shortest_link = 1e-9*inner_arm_3
+    inner_arm_3_times_shortest_link_2 = 1e-9*inner_arm_3
     inner_arm_3_times_2 = 2.0*inner_arm_3
-    cos_azimuth_1_times_inner_arm_1 = inner_arm_1*cos_azimuth_1
-    inner_arm_1_times_sin_azimuth_1 = inner_arm_1*sin_azimuth_1
-    cos_azimuth_2_times_inner_arm_2 = inner_arm_2*cos_azimuth_2
-    inner_arm_2_times_sin_azimuth_2 = inner_arm_2*sin_azimuth_2
-    cos_azimuth_3_times_inner_arm_3 = inner_arm_3*cos_azimuth_3
-    inner_arm_3_times_sin_azimuth_3 = inner_arm_3*sin_azimuth_3
+    cos_azimuth_1_times_inner_arm_1_2 = inner_arm_1*cos_azimuth_1
+    inner_arm_1_times_sin_azimuth_1_2 = inner_arm_1*sin_azimuth_1
+    cos_azimuth_2_times_inner_arm_2_2 = inner_arm_2*cos_azimuth_2
+    inner_arm_2_times_sin_azimuth_2_2 = inner_arm_2*sin_azimuth_2
+    cos_azimuth_3_times_inner_arm_3_2 = inner_arm_3*cos_azimuth_3
+    inner_arm_3_times_sin_azimuth_3_2 = inner_arm_3*sin_azimuth_3
     constant_part_7 = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
@@ -86,9 +86,9 @@ def unrolled(k: Constants) -> Unrolled:
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > inner_arm_1_times_shortest_link):
+        if not (effective_a1 > inner_arm_1_times_shortest_link_2):
             return 8*(3,)
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # square of the third side
         third_square_a1 = (
@@ -108,9 +108,9 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > inner_arm_2_times_shortest_link):
+        if not (effective_a2 > inner_arm_2_times_shortest_link_2):
             return 8*(3,)
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # square of the third side
         third_square_a2 = (
@@ -130,9 +130,9 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > inner_arm_3_times_shortest_link):
+        if not (effective_a3 > inner_arm_3_times_shortest_link_2):
             return 8*(3,)
-        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # square of the third side
         third_square_a3 = (
@@ -164,9 +164,9 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
-        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
         rod_2_x_outward = x - pivot_2_x
-        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2_2*cos_a2  # rod 2
         rod_2_y_outward = y - pivot_2_y
         cos_swing_a2_times_z_by_divisor_a2 = z*cos_swing_a2/divisor_a2
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
@@ -180,9 +180,9 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
-        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
         rod_3_x_outward = x - pivot_3_x
-        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3_2*cos_a3  # rod 3
         rod_3_y_outward = y - pivot_3_y
         cos_swing_a3_times_z_by_divisor_a3 = z*cos_swing_a3/divisor_a3
         along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
@@ -202,9 +202,9 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 + sin_swing_a3_times_z_by_divisor_a3
-        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
         rod_3_x_inward = x - pivot_3_x
-        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3_2*cos_a3  # rod 3
         rod_3_y_inward = y - pivot_3_y
         sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
         minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
@@ -213,9 +213,9 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
             axis_a3_inward = nearest_period(axis_a3_inward, open_a3)
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 + sin_swing_a2_times_z_by_divisor_a2
-        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
         rod_2_x_inward = x - pivot_2_x
-        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2_2*cos_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
         sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
@@ -224,9 +224,9 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+            pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
             rod_1_x = x - pivot_1_x
-            pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+            pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1_2*cos_a1  # rod 1
             rod_1_y = y - pivot_1_y
             minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
             rod_1_z = minus_pivot_1_z + z
@@ -301,9 +301,9 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+            pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
             rod_1_x = x - pivot_1_x
-            pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+            pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1_2*cos_a1  # rod 1
             rod_1_y = y - pivot_1_y
             minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
             rod_1_z = minus_pivot_1_z + z
@@ -423,9 +423,9 @@ def unrolled(k: Constants) -> Unrolled:
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > inner_arm_1_times_shortest_link):
+        if not (effective_a1 > inner_arm_1_times_shortest_link_2):
             return 8*(None,)
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # square of the third side
         third_square_a1 = (
@@ -445,9 +445,9 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > inner_arm_2_times_shortest_link):
+        if not (effective_a2 > inner_arm_2_times_shortest_link_2):
             return 8*(None,)
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # square of the third side
         third_square_a2 = (
@@ -467,9 +467,9 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > inner_arm_3_times_shortest_link):
+        if not (effective_a3 > inner_arm_3_times_shortest_link_2):
             return 8*(None,)
-        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # square of the third side
         third_square_a3 = (
@@ -491,9 +491,9 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
-        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1_2*cos_a1  # rod 1
         rod_1_y = y - pivot_1_y
         cos_swing_a1_times_z_by_divisor_a1 = z*cos_swing_a1/divisor_a1
         along_a1_times_sin_swing_a1_by_divisor_a1 = along_a1*sin_swing_a1/divisor_a1
@@ -507,9 +507,9 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
-        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
         rod_2_x_outward = x - pivot_2_x
-        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2_2*cos_a2  # rod 2
         rod_2_y_outward = y - pivot_2_y
         cos_swing_a2_times_z_by_divisor_a2 = z*cos_swing_a2/divisor_a2
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
@@ -523,9 +523,9 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
-        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
         rod_3_x_outward = x - pivot_3_x
-        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3_2*cos_a3  # rod 3
         rod_3_y_outward = y - pivot_3_y
         cos_swing_a3_times_z_by_divisor_a3 = z*cos_swing_a3/divisor_a3
         along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
@@ -546,9 +546,9 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 + sin_swing_a3_times_z_by_divisor_a3
-        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
         rod_3_x_inward = x - pivot_3_x
-        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3_2*cos_a3  # rod 3
         rod_3_y_inward = y - pivot_3_y
         sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
         minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
@@ -565,9 +565,9 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 + sin_swing_a2_times_z_by_divisor_a2
-        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
         rod_2_x_inward = x - pivot_2_x
-        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2_2*cos_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
         sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
@@ -594,9 +594,9 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 + sin_swing_a1_times_z_by_divisor_a1
-        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1_2*cos_a1  # rod 1
         rod_1_y = y - pivot_1_y
         sin_a1 = along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
         minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
@@ -662,9 +662,9 @@ def unrolled(k: Constants) -> Unrolled:
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > inner_arm_1_times_shortest_link):
+        if not (effective_a1 > inner_arm_1_times_shortest_link_2):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # square of the third side
         third_square_a1 = (
@@ -684,9 +684,9 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > inner_arm_2_times_shortest_link):
+        if not (effective_a2 > inner_arm_2_times_shortest_link_2):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # square of the third side
         third_square_a2 = (
@@ -706,9 +706,9 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > inner_arm_3_times_shortest_link):
+        if not (effective_a3 > inner_arm_3_times_shortest_link_2):
             return None
-        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # square of the third side
         third_square_a3 = (
@@ -728,9 +728,9 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
-        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1_2*cos_a1  # rod 1
         rod_1_y = y - pivot_1_y
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
         minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
@@ -740,9 +740,9 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
-        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2_2*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
@@ -752,9 +752,9 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
-        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3_2*cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - z*cos_swing_a3/divisor_a3
         minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3

@@ -21,7 +21,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale = k.machine_scale
     offset_x = k.offset_x
     offset_y = k.offset_y
-    machine_scale_times_plane = 1e-6*machine_scale
+    machine_scale_times_plane_2 = 1e-6*machine_scale
     no_offsets = not any((offset_x, offset_y,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -31,7 +31,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return (2,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return (3,)
         axis_x = offset_x + x
         # limits of X
@@ -49,7 +49,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return (None,)
         return (
             (offset_x + x, offset_y + y),
@@ -59,7 +59,7 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return None
         if no_offsets:
             return (x, y)

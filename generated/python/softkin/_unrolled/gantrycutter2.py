@@ -28,7 +28,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_x = k.offset_x
     offset_y = k.offset_y
     single_r = k.single_r
-    machine_scale_times_plane = 1e-6*machine_scale
+    machine_scale_times_plane_2 = 1e-6*machine_scale
     no_offsets = not any((offset_r, offset_x, offset_y,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -46,7 +46,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return (3,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return (3,)
         direction_y_r = direction_r*heading_across
         open_r = mid_r if single_r else ref_r  # R: where its turn is open
@@ -78,7 +78,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return (None,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return (None,)
         return (
             (offset_x + x, offset_y + y, offset_r + arctan2(direction_r*heading_across, heading_along)*RADIAN),
@@ -94,7 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return None
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return None
         if no_offsets:
             return (x, y, arctan2(direction_r*heading_across, heading_along)*RADIAN)

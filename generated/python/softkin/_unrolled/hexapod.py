@@ -111,7 +111,7 @@ def unrolled(k: Constants) -> Unrolled:
     platform_6_y = k.platform_6_y
     platform_6_z = k.platform_6_z
     platform_radius = k.platform_radius
-    machine_scale_times_shortest_link = 1e-9*machine_scale
+    machine_scale_times_shortest_link_2 = 1e-9*machine_scale
     no_offsets = not any((offset_l1, offset_l2, offset_l3, offset_l4, offset_l5, offset_l6,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -134,7 +134,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
-        if not (l1 > machine_scale_times_shortest_link):
+        if not (l1 > machine_scale_times_shortest_link_2):
             return (3,)
         platform_2_z_times_r13 = platform_2_z*r13
         platform_2_x_times_r11_plus_platform_2_y_times_r12 = platform_2_x*r11 + platform_2_y*r12
@@ -149,7 +149,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
-        if not (l2 > machine_scale_times_shortest_link):
+        if not (l2 > machine_scale_times_shortest_link_2):
             return (3,)
         platform_3_z_times_r13 = platform_3_z*r13
         platform_3_x_times_r11_plus_platform_3_y_times_r12 = platform_3_x*r11 + platform_3_y*r12
@@ -164,7 +164,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
-        if not (l3 > machine_scale_times_shortest_link):
+        if not (l3 > machine_scale_times_shortest_link_2):
             return (3,)
         platform_4_z_times_r13 = platform_4_z*r13
         platform_4_x_times_r11_plus_platform_4_y_times_r12 = platform_4_x*r11 + platform_4_y*r12
@@ -179,7 +179,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
-        if not (l4 > machine_scale_times_shortest_link):
+        if not (l4 > machine_scale_times_shortest_link_2):
             return (3,)
         platform_5_z_times_r13 = platform_5_z*r13
         platform_5_x_times_r11_plus_platform_5_y_times_r12 = platform_5_x*r11 + platform_5_y*r12
@@ -194,7 +194,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
-        if not (l5 > machine_scale_times_shortest_link):
+        if not (l5 > machine_scale_times_shortest_link_2):
             return (3,)
         platform_6_z_times_r13 = platform_6_z*r13
         platform_6_x_times_r11_plus_platform_6_y_times_r12 = platform_6_x*r11 + platform_6_y*r12
@@ -209,10 +209,10 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
-        if not (l6 > machine_scale_times_shortest_link):
+        if not (l6 > machine_scale_times_shortest_link_2):
             return (3,)
         # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
         along_1_z = span_1_z/divisor_1
@@ -221,7 +221,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_1 >= least_cos_base):
             return (3,)
         # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
         along_2_z = span_2_z/divisor_2
@@ -230,7 +230,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_2 >= least_cos_base):
             return (3,)
         # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
         along_3_z = span_3_z/divisor_3
@@ -239,7 +239,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_3 >= least_cos_base):
             return (3,)
         # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
         along_4_z = span_4_z/divisor_4
@@ -248,7 +248,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_4 >= least_cos_base):
             return (3,)
         # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
         along_5_z = span_5_z/divisor_5
@@ -257,7 +257,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_5 >= least_cos_base):
             return (3,)
         # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
         along_6_z = span_6_z/divisor_6
@@ -408,7 +408,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
-        if not (l1 > machine_scale_times_shortest_link):
+        if not (l1 > machine_scale_times_shortest_link_2):
             return (None,)
         platform_2_z_times_r13 = platform_2_z*r13
         platform_2_x_times_r11_plus_platform_2_y_times_r12 = platform_2_x*r11 + platform_2_y*r12
@@ -423,7 +423,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
-        if not (l2 > machine_scale_times_shortest_link):
+        if not (l2 > machine_scale_times_shortest_link_2):
             return (None,)
         platform_3_z_times_r13 = platform_3_z*r13
         platform_3_x_times_r11_plus_platform_3_y_times_r12 = platform_3_x*r11 + platform_3_y*r12
@@ -438,7 +438,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
-        if not (l3 > machine_scale_times_shortest_link):
+        if not (l3 > machine_scale_times_shortest_link_2):
             return (None,)
         platform_4_z_times_r13 = platform_4_z*r13
         platform_4_x_times_r11_plus_platform_4_y_times_r12 = platform_4_x*r11 + platform_4_y*r12
@@ -453,7 +453,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
-        if not (l4 > machine_scale_times_shortest_link):
+        if not (l4 > machine_scale_times_shortest_link_2):
             return (None,)
         platform_5_z_times_r13 = platform_5_z*r13
         platform_5_x_times_r11_plus_platform_5_y_times_r12 = platform_5_x*r11 + platform_5_y*r12
@@ -468,7 +468,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
-        if not (l5 > machine_scale_times_shortest_link):
+        if not (l5 > machine_scale_times_shortest_link_2):
             return (None,)
         platform_6_z_times_r13 = platform_6_z*r13
         platform_6_x_times_r11_plus_platform_6_y_times_r12 = platform_6_x*r11 + platform_6_y*r12
@@ -483,10 +483,10 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
-        if not (l6 > machine_scale_times_shortest_link):
+        if not (l6 > machine_scale_times_shortest_link_2):
             return (None,)
         # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
         along_1_z = span_1_z/divisor_1
@@ -495,7 +495,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_1 >= least_cos_base):
             return (None,)
         # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
         along_2_z = span_2_z/divisor_2
@@ -504,7 +504,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_2 >= least_cos_base):
             return (None,)
         # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
         along_3_z = span_3_z/divisor_3
@@ -513,7 +513,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_3 >= least_cos_base):
             return (None,)
         # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
         along_4_z = span_4_z/divisor_4
@@ -522,7 +522,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_4 >= least_cos_base):
             return (None,)
         # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
         along_5_z = span_5_z/divisor_5
@@ -531,7 +531,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_5 >= least_cos_base):
             return (None,)
         # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
         along_6_z = span_6_z/divisor_6
@@ -652,7 +652,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
-        if not (l1 > machine_scale_times_shortest_link):
+        if not (l1 > machine_scale_times_shortest_link_2):
             return None
         span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x  # rod 2
         span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y  # rod 2
@@ -661,7 +661,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
-        if not (l2 > machine_scale_times_shortest_link):
+        if not (l2 > machine_scale_times_shortest_link_2):
             return None
         span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x  # rod 3
         span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y  # rod 3
@@ -670,7 +670,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
-        if not (l3 > machine_scale_times_shortest_link):
+        if not (l3 > machine_scale_times_shortest_link_2):
             return None
         span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x  # rod 4
         span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y  # rod 4
@@ -679,7 +679,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
-        if not (l4 > machine_scale_times_shortest_link):
+        if not (l4 > machine_scale_times_shortest_link_2):
             return None
         span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x  # rod 5
         span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y  # rod 5
@@ -688,7 +688,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
-        if not (l5 > machine_scale_times_shortest_link):
+        if not (l5 > machine_scale_times_shortest_link_2):
             return None
         span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x  # rod 6
         span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y  # rod 6
@@ -697,10 +697,10 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
-        if not (l6 > machine_scale_times_shortest_link):
+        if not (l6 > machine_scale_times_shortest_link_2):
             return None
         # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
         along_1_z = span_1_z/divisor_1
@@ -709,7 +709,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_1 >= least_cos_base):
             return None
         # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
         along_2_z = span_2_z/divisor_2
@@ -718,7 +718,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_2 >= least_cos_base):
             return None
         # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
         along_3_z = span_3_z/divisor_3
@@ -727,7 +727,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_3 >= least_cos_base):
             return None
         # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
         along_4_z = span_4_z/divisor_4
@@ -736,7 +736,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_4 >= least_cos_base):
             return None
         # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
         along_5_z = span_5_z/divisor_5
@@ -745,7 +745,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (cos_base_lean_5 >= least_cos_base):
             return None
         # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
         along_6_z = span_6_z/divisor_6

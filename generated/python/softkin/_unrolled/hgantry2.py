@@ -25,7 +25,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale = k.machine_scale
     offset_a = k.offset_a
     offset_b = k.offset_b
-    machine_scale_times_plane = 1e-6*machine_scale
+    machine_scale_times_plane_2 = 1e-6*machine_scale
     no_offsets = not any((offset_a, offset_b,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -35,7 +35,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return (2,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return (3,)
         a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
@@ -64,7 +64,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return (None,)
         a = x - y  # a, b: affine in the x and y equations
         return (
@@ -75,7 +75,7 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return None
         a = x - y  # a, b: affine in the x and y equations
         if no_offsets:

@@ -36,7 +36,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_b = k.single_b
     tool_length = k.tool_length
     tool_side = k.tool_side
-    tool_length_times_tool_side = tool_length*tool_side
+    tool_length_times_tool_side_2 = tool_length*tool_side
     offset_b_times_2 = 2.0*offset_b
     no_offsets = not any((offset_a, offset_b, offset_x, offset_y, offset_z,))
 
@@ -51,16 +51,16 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= ref_b <= 1e9
         ):
             return 2*(2,)
-        wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
+        wrist_x = x - r13*tool_length_times_tool_side_2  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
             return 2*(3,)
-        axis_y = offset_y + (y - r23*tool_length_times_tool_side)
+        axis_y = offset_y + (y - r23*tool_length_times_tool_side_2)
         # limits of Y
         if not (axis_y >= lowest_y and axis_y <= highest_y):
             return 2*(3,)
-        axis_z = offset_z + (z - r33*tool_length_times_tool_side)
+        axis_z = offset_z + (z - r33*tool_length_times_tool_side_2)
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
             return 2*(3,)
@@ -132,10 +132,10 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         _, _, _, ref_a, _ = 5*(0.0,) if reference is None else reference
-        wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
+        wrist_x = x - r13*tool_length_times_tool_side_2  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
-        axis_y = offset_y + (y - r23*tool_length_times_tool_side)
-        axis_z = offset_z + (z - r33*tool_length_times_tool_side)
+        axis_y = offset_y + (y - r23*tool_length_times_tool_side_2)
+        axis_z = offset_z + (z - r33*tool_length_times_tool_side_2)
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
@@ -168,7 +168,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         (sigma_roll,) = signs
         _, _, _, ref_a, _ = 5*(0.0,) if reference is None else reference
-        wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
+        wrist_x = x - r13*tool_length_times_tool_side_2  # the point that the last joints turn about
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
@@ -182,13 +182,13 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a = sin(free_a)
         if no_offsets:
             return (
-                wrist_x, y - r23*tool_length_times_tool_side, z - r33*tool_length_times_tool_side,
+                wrist_x, y - r23*tool_length_times_tool_side_2, z - r33*tool_length_times_tool_side_2,
                 arctan2(direction_y_a, direction_x_a)*RADIAN, arctan2(sigma_roll*radius_a, r33)*RADIAN,
             )
         return (
             offset_x + wrist_x,
-            offset_y + (y - r23*tool_length_times_tool_side),
-            offset_z + (z - r33*tool_length_times_tool_side),
+            offset_y + (y - r23*tool_length_times_tool_side_2),
+            offset_z + (z - r33*tool_length_times_tool_side_2),
             offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN,
             offset_b + arctan2(sigma_roll*radius_a, r33)*RADIAN,
         )

@@ -34,20 +34,20 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     swap_xy = k.swap_xy
-    machine_scale_times_plane = 1e-6*machine_scale
-    link_length_1_times_shortest_link = 1e-9*link_length_1
+    machine_scale_times_plane_2 = 1e-6*machine_scale
+    link_length_1_times_shortest_link_2 = 1e-9*link_length_1
     link_length_1_times_2 = 2.0*link_length_1
     link_length_1_times_link_length_3_by_link_length_2 = link_length_1*link_length_3/link_length_2
-    link_length_3_by_link_length_2 = link_length_3/link_length_2
+    link_length_3_by_link_length_2_2 = link_length_3/link_length_2
     link_length_1_times_link_length_2 = link_length_1*link_length_2
     link_length_1_times_link_length_3 = link_length_1*link_length_3
-    link_length_5_times_shortest_link = 1e-9*link_length_5
-    link_length_2_by_link_length_3 = link_length_2/link_length_3
+    link_length_5_times_shortest_link_2 = 1e-9*link_length_5
+    link_length_2_by_link_length_3_2 = link_length_2/link_length_3
     constant_part = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
     link_length_5_times_2 = 2.0*link_length_5
-    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-    link_length_4_plus_link_length_5 = link_length_4 + link_length_5
+    link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
+    link_length_4_plus_link_length_5_2 = link_length_4 + link_length_5
     link_length_4_minus_link_length_5 = link_length_4 - link_length_5
     no_offsets = not any((offset_a1, offset_a2,))
 
@@ -62,7 +62,7 @@ def unrolled(k: Constants) -> Unrolled:
         ):
             return 4*(2,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(3,)
         # rod upper
         if swap_xy:
@@ -74,9 +74,9 @@ def unrolled(k: Constants) -> Unrolled:
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
-        if not (effective_a1 > link_length_1_times_shortest_link):
+        if not (effective_a1 > link_length_1_times_shortest_link_2):
             return 4*(3,)
-        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
         swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
         divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
         divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
@@ -118,7 +118,7 @@ def unrolled(k: Constants) -> Unrolled:
             centre_1_y_left = pivot_upper_y_left
             centre_1_x_right = pivot_upper_x_right
             centre_1_y_right = pivot_upper_y_right
-        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2  # rod rear
+        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
         along_a2 = (
             (
@@ -127,7 +127,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2  # rod rear
+        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2  # rod rear
         link_length_2_times_minus_span_rear_y = link_length_2*minus_span_rear_y
         across_a2 = (
             (
@@ -137,7 +137,7 @@ def unrolled(k: Constants) -> Unrolled:
             /link_length_2
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
         # 1 - cosine, times the scale
@@ -182,7 +182,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_left_right - open_a2 < 179.999999999:
             axis_a2_left_right = nearest_period(axis_a2_left_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
-        if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_left
             rod_1_y = y - centre_1_y_left
             part_of_pivot_rear_x = (
@@ -193,8 +193,8 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_1*cos_a1_left + link_length_1_times_link_length_3_by_link_length_2*cos_a1_left
             )
             pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left  # rod rear
-            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3
-            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3
+            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
+            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
                 constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
             )
@@ -208,10 +208,10 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_right  # rod rear
             pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_right  # rod rear
             minus_centre_2_x_right = (
-                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3
+                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
             )
             minus_centre_2_y_right = (
-                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3
+                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3_2
             )
             type2_arms_aligned_right = (
                 constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
@@ -241,7 +241,7 @@ def unrolled(k: Constants) -> Unrolled:
             /link_length_2
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
         # 1 - cosine, times the scale
@@ -276,7 +276,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_right_right - open_a2 < 179.999999999:
             axis_a2_right_right = nearest_period(axis_a2_right_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
-        if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_right
             rod_1_y = y - centre_1_y_right
             part_of_pivot_rear_x_left_right = (
@@ -287,8 +287,8 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_1*cos_a1_right + link_length_1_times_link_length_3_by_link_length_2*cos_a1_right
             )
             pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left  # rod rear
-            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3
-            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3
+            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
+            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
                 constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
             )
@@ -302,10 +302,10 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right  # rod rear
             pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right  # rod rear
             minus_centre_2_x_right = (
-                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3
+                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
             )
             minus_centre_2_y_right = (
-                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3
+                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3_2
             )
             type2_arms_aligned_right = (
                 constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
@@ -331,7 +331,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(None,)
         # rod upper
         if swap_xy:
@@ -343,9 +343,9 @@ def unrolled(k: Constants) -> Unrolled:
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
-        if not (effective_a1 > link_length_1_times_shortest_link):
+        if not (effective_a1 > link_length_1_times_shortest_link_2):
             return 4*(None,)
-        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
         swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
         divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
         divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
@@ -387,7 +387,7 @@ def unrolled(k: Constants) -> Unrolled:
             centre_1_y_left = pivot_upper_y_left
             centre_1_x_right = pivot_upper_x_right
             centre_1_y_right = pivot_upper_y_right
-        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2  # rod rear
+        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
         along_a2 = (
             (
@@ -396,7 +396,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2  # rod rear
+        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2  # rod rear
         link_length_2_times_minus_span_rear_y = link_length_2*minus_span_rear_y
         across_a2 = (
             (
@@ -406,7 +406,7 @@ def unrolled(k: Constants) -> Unrolled:
             /link_length_2
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
         # 1 - cosine, times the scale
@@ -440,7 +440,7 @@ def unrolled(k: Constants) -> Unrolled:
             across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        if effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_left
             rod_1_y = y - centre_1_y_left
             part_of_pivot_rear_x = (
@@ -451,8 +451,8 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_1*cos_a1_left + link_length_1_times_link_length_3_by_link_length_2*cos_a1_left
             )
             pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left_left  # rod rear
-            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3
-            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3
+            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
+            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
                 constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
             )
@@ -460,10 +460,10 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_left_right  # rod rear
             pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_left_right  # rod rear
             minus_centre_2_x_right = (
-                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3
+                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
             )
             minus_centre_2_y_right = (
-                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3
+                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3_2
             )
             type2_arms_aligned_right = (
                 constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
@@ -488,7 +488,7 @@ def unrolled(k: Constants) -> Unrolled:
             /link_length_2
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
         # 1 - cosine, times the scale
@@ -514,7 +514,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_a2_right_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
         sin_a2_right_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        if effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             rod_1_x = x - centre_1_x_right
             rod_1_y = y - centre_1_y_right
             part_of_pivot_rear_x_left_right = (
@@ -525,8 +525,8 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_1*cos_a1_right + link_length_1_times_link_length_3_by_link_length_2*cos_a1_right
             )
             pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_left  # rod rear
-            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3
-            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3
+            minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
+            minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
                 constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
             )
@@ -534,10 +534,10 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_right  # rod rear
             pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_right  # rod rear
             minus_centre_2_x_right = (
-                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3
+                (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
             )
             minus_centre_2_y_right = (
-                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3
+                (pivot_rear_x_right if swap_xy else pivot_rear_y_right)*link_length_2_by_link_length_3_2
             )
             type2_arms_aligned_right = (
                 constant_part*((minus_centre_2_y_right + y)*rod_1_x - (minus_centre_2_x_right + x)*rod_1_y)
@@ -575,7 +575,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         sigma_t, sigma_w = signs
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return None
         # rod upper
         if swap_xy:
@@ -587,17 +587,17 @@ def unrolled(k: Constants) -> Unrolled:
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
-        if not (effective_a1 > link_length_1_times_shortest_link):
+        if not (effective_a1 > link_length_1_times_shortest_link_2):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
         swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
         # 1 - cosine, times the scale
         one_less_cos_a1 = (
-            (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
+            (divisor_a1 + link_length_1_minus_link_length_2_2)*(divisor_a1 + link_length_1_plus_link_length_2_2)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (
-            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
+            (link_length_1_plus_link_length_2_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2_2)
         )
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
@@ -608,7 +608,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2  # rod rear
+        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear
         along_a2 = (
             (
                 link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1
@@ -617,7 +617,7 @@ def unrolled(k: Constants) -> Unrolled:
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
-        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2  # rod rear
+        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2  # rod rear
         across_a2 = (
             (
                 link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
@@ -627,17 +627,17 @@ def unrolled(k: Constants) -> Unrolled:
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > link_length_5_times_shortest_link):
+        if not (effective_a2 > link_length_5_times_shortest_link_2):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         # 1 - cosine, times the scale
         one_less_cos_a2 = (
-            (divisor_a2 + link_length_4_plus_link_length_5)*(divisor_a2 - link_length_4_minus_link_length_5)
+            (divisor_a2 + link_length_4_plus_link_length_5_2)*(divisor_a2 - link_length_4_minus_link_length_5)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (
-            (link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 + link_length_4_minus_link_length_5)
+            (link_length_4_plus_link_length_5_2 - divisor_a2)*(divisor_a2 + link_length_4_minus_link_length_5)
         )
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
@@ -665,8 +665,8 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_rear_y = (
             link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1 + link_length_5*sin_a2
         )
-        minus_centre_2_x = (pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
-        minus_centre_2_y = (pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
+        minus_centre_2_x = (pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3_2
+        minus_centre_2_y = (pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3_2
         type2_arms_aligned = (
             ((x - centre_1_x)*(minus_centre_2_y + y) - (y - centre_1_y)*(minus_centre_2_x + x))
             *constant_part

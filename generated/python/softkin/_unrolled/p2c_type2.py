@@ -32,13 +32,13 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     tcp_link_distance = k.tcp_link_distance
-    machine_scale_times_plane = 1e-6*machine_scale
+    machine_scale_times_plane_2 = 1e-6*machine_scale
     displacement_minus_tcp_link_distance_by_2 = displacement - 0.5*tcp_link_distance
-    inner_arm_times_shortest_link = 1e-9*inner_arm
+    inner_arm_times_shortest_link_2 = 1e-9*inner_arm
     inner_arm_times_2 = 2.0*inner_arm
-    assembly_sign_by_outer_arm_squared = assembly_sign/(outer_arm*outer_arm)
-    inner_arm_minus_outer_arm = inner_arm - outer_arm
-    inner_arm_plus_outer_arm = inner_arm + outer_arm
+    assembly_sign_by_outer_arm_squared_2 = assembly_sign/(outer_arm*outer_arm)
+    inner_arm_minus_outer_arm_2 = inner_arm - outer_arm
+    inner_arm_plus_outer_arm_2 = inner_arm + outer_arm
     no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -52,14 +52,14 @@ def unrolled(k: Constants) -> Unrolled:
         ):
             return 4*(2,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(3,)
         span_1_x = displacement_minus_tcp_link_distance_by_2 + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > inner_arm_times_shortest_link):
+        if not (effective_a1 > inner_arm_times_shortest_link_2):
             return 4*(3,)
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
         divisor_a1_minus_outer_arm = divisor_a1 - outer_arm
         divisor_a1_plus_outer_arm = divisor_a1 + outer_arm
@@ -74,9 +74,9 @@ def unrolled(k: Constants) -> Unrolled:
         span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > inner_arm_times_shortest_link):
+        if not (effective_a2 > inner_arm_times_shortest_link_2):
             return 4*(3,)
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
         divisor_a2_minus_outer_arm = divisor_a2 - outer_arm
         divisor_a2_plus_outer_arm = divisor_a2 + outer_arm
@@ -137,7 +137,7 @@ def unrolled(k: Constants) -> Unrolled:
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 type2_arms_aligned_outward = (
-                    assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
+                    assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
                 )
                 refusal_outward_outward_2 = 0 if type2_arms_aligned_outward >= min_type2_margin else 3
             else:
@@ -145,7 +145,7 @@ def unrolled(k: Constants) -> Unrolled:
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 type2_arms_aligned_inward = (
-                    assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
+                    assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
                 )
                 refusal_outward_inward_2 = 0 if type2_arms_aligned_inward >= min_type2_margin else 3
             else:
@@ -166,7 +166,7 @@ def unrolled(k: Constants) -> Unrolled:
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 type2_arms_aligned_outward = (
-                    assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
+                    assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
                 )
                 refusal_inward_outward_2 = 0 if type2_arms_aligned_outward >= min_type2_margin else 3
             else:
@@ -174,7 +174,7 @@ def unrolled(k: Constants) -> Unrolled:
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 type2_arms_aligned_inward = (
-                    assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
+                    assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
                 )
                 refusal_inward_inward_2 = 0 if type2_arms_aligned_inward >= min_type2_margin else 3
             else:
@@ -193,14 +193,14 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(None,)
         span_1_x = displacement_minus_tcp_link_distance_by_2 + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > inner_arm_times_shortest_link):
+        if not (effective_a1 > inner_arm_times_shortest_link_2):
             return 4*(None,)
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
         divisor_a1_minus_outer_arm = divisor_a1 - outer_arm
         divisor_a1_plus_outer_arm = divisor_a1 + outer_arm
@@ -215,9 +215,9 @@ def unrolled(k: Constants) -> Unrolled:
         span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > inner_arm_times_shortest_link):
+        if not (effective_a2 > inner_arm_times_shortest_link_2):
             return 4*(None,)
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
         divisor_a2_minus_outer_arm = divisor_a2 - outer_arm
         divisor_a2_plus_outer_arm = divisor_a2 + outer_arm
@@ -257,7 +257,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = cos_swing_a2_times_y_by_divisor_a2 + sin_swing_a2_times_span_2_x_by_divisor_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
         rod_2_y_outward = y - pivot_2_y
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
@@ -268,7 +268,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
@@ -278,11 +278,11 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         return (
@@ -297,19 +297,19 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2 = signs
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return None
         span_1_x = displacement_minus_tcp_link_distance_by_2 + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > inner_arm_times_shortest_link):
+        if not (effective_a1 > inner_arm_times_shortest_link_2):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
         # 1 - cosine, times the scale
-        one_less_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm)
+        one_less_cos_a1 = (inner_arm_plus_outer_arm_2 - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm)*(divisor_a1 + inner_arm_plus_outer_arm)
+        one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm_2)*(divisor_a1 + inner_arm_plus_outer_arm_2)
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
@@ -317,14 +317,14 @@ def unrolled(k: Constants) -> Unrolled:
         span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > inner_arm_times_shortest_link):
+        if not (effective_a2 > inner_arm_times_shortest_link_2):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm_2 - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm)*(divisor_a2 + inner_arm_plus_outer_arm)
+        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm_2)*(divisor_a2 + inner_arm_plus_outer_arm_2)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
@@ -347,7 +347,7 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_2_y = inner_arm*sin_a2  # rod 2
         type2_arms_aligned = (
             ((x - pivot_1_x)*(y - pivot_2_y) - (y - pivot_1_y)*(x - pivot_2_x))
-            *assembly_sign_by_outer_arm_squared
+            *assembly_sign_by_outer_arm_squared_2
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):

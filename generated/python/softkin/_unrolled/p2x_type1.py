@@ -30,9 +30,9 @@ def unrolled(k: Constants) -> Unrolled:
     rail_y_2 = k.rail_y_2
     tcp_offset_1 = k.tcp_offset_1
     tcp_offset_2 = k.tcp_offset_2
-    machine_scale_times_plane = 1e-6*machine_scale
-    arm_length_1_squared_times_rounding = 1e-12*arm_length_1*arm_length_1
-    arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
+    machine_scale_times_plane_2 = 1e-6*machine_scale
+    arm_length_1_squared_times_rounding_2 = 1e-12*arm_length_1*arm_length_1
+    arm_length_2_squared_times_rounding_2 = 1e-12*arm_length_2*arm_length_2
     assembly_sign_by_arm_length_1_by_arm_length_2 = assembly_sign/(arm_length_1*arm_length_2)
     no_offsets = not any((offset_a1, offset_a2,))
 
@@ -43,17 +43,17 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return 4*(2,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(3,)
         span_1_y = y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
+        if not (root_square_a1 >= -arm_length_1_squared_times_rounding_2):
             return 4*(3,)
         span_2_y = y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
+        if not (root_square_a2 >= -arm_length_2_squared_times_rounding_2):
             return 4*(3,)
         span_2_x = tcp_offset_2 + x  # rod 2
         a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
@@ -124,17 +124,17 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(None,)
         span_1_y = y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
+        if not (root_square_a1 >= -arm_length_1_squared_times_rounding_2):
             return 4*(None,)
         span_2_y = y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
+        if not (root_square_a2 >= -arm_length_2_squared_times_rounding_2):
             return 4*(None,)
         span_2_x = tcp_offset_2 + x  # rod 2
         a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
@@ -186,17 +186,17 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2 = signs
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return None
         span_1_y = y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
+        if not (root_square_a1 >= -arm_length_1_squared_times_rounding_2):
             return None
         span_2_y = y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
+        if not (root_square_a2 >= -arm_length_2_squared_times_rounding_2):
             return None
         span_1_x = x - tcp_offset_1  # rod 1
         a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1

@@ -26,9 +26,9 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a1 = k.offset_a1
     offset_a2 = k.offset_a2
     span_1_x = k.span_1_x
-    machine_scale_times_plane = 1e-6*machine_scale
+    machine_scale_times_plane_2 = 1e-6*machine_scale
     share_of_arm_length_squared = 2.5e-13*arm_length*arm_length
-    assembly_sign_by_arm_length = assembly_sign/arm_length
+    assembly_sign_by_arm_length_2 = assembly_sign/arm_length
     no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -38,13 +38,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return (2,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return (3,)
         root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
         if not (root_square_a2 >= -share_of_arm_length_squared):
             return (3,)
-        type2_flat = assembly_sign_by_arm_length*y
+        type2_flat = assembly_sign_by_arm_length_2*y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
             return (3,)
@@ -66,13 +66,13 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return (None,)
         root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
         if not (root_square_a2 >= -share_of_arm_length_squared):
             return (None,)
-        type2_flat = assembly_sign_by_arm_length*y
+        type2_flat = assembly_sign_by_arm_length_2*y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
             return (None,)
@@ -86,13 +86,13 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return None
         root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
         if not (root_square_a2 >= -share_of_arm_length_squared):
             return None
-        type2_flat = assembly_sign_by_arm_length*y
+        type2_flat = assembly_sign_by_arm_length_2*y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
             return None

@@ -31,11 +31,11 @@ def unrolled(k: Constants) -> Unrolled:
     scale_a2_from_a1 = k.scale_a2_from_a1
     single_a1 = k.single_a1
     single_a2 = k.single_a2
-    machine_scale_times_plane = 1e-6*machine_scale
-    scale_a2_from_a1_squared_times_rounding = 1e-12*scale_a2_from_a1*scale_a2_from_a1
-    machine_scale_times_free_angle = 1e-11*machine_scale
-    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+    machine_scale_times_plane_2 = 1e-6*machine_scale
+    scale_a2_from_a1_squared_times_rounding_2 = 1e-12*scale_a2_from_a1*scale_a2_from_a1
+    machine_scale_times_free_angle_2 = 1e-11*machine_scale
+    link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
     no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -49,7 +49,7 @@ def unrolled(k: Constants) -> Unrolled:
         ):
             return 2*(2,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return 2*(3,)
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
@@ -64,14 +64,14 @@ def unrolled(k: Constants) -> Unrolled:
         )
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
+        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding_2):
             return 2*(3,)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
         sin_a2_from_a1 = 2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/sum_a2_from_a1
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(
                 link_length_2*sin_a2_from_a1 + 0.0, link_length_1 + link_length_2*cos_a2_from_a1 + 0.0,
             )
@@ -129,7 +129,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_a1, _ = 2*(0.0,) if reference is None else reference
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return 2*(None,)
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
@@ -144,14 +144,14 @@ def unrolled(k: Constants) -> Unrolled:
         )
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
+        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding_2):
             return 2*(None,)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
         sin_a2_from_a1 = 2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/sum_a2_from_a1
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
             angle_of_x = arctan2(y, x)
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
@@ -174,20 +174,20 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_elbow,) = signs
         ref_a1, _ = 2*(0.0,) if reference is None else reference
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return None
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
         one_less_cos_a2_from_a1 = (
-            (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+            (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2_from_a1 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         )
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
+        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding_2):
             return None
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
@@ -196,7 +196,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_from_a1 = (
             2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
         )
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
         else:
             angle_a1 = (ref_a1 - offset_a1)*DEGREE

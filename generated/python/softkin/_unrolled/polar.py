@@ -24,8 +24,8 @@ def unrolled(k: Constants) -> Unrolled:
     offset_c = k.offset_c
     offset_r = k.offset_r
     single_c = k.single_c
-    machine_scale_times_plane = 1e-6*machine_scale
-    machine_scale_times_free_angle = 1e-11*machine_scale
+    machine_scale_times_plane_2 = 1e-6*machine_scale
+    machine_scale_times_free_angle_2 = 1e-11*machine_scale
     no_offsets = not any((offset_c, offset_r,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -36,11 +36,11 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
             return (2,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return (3,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
-        if radius_c > machine_scale_times_free_angle:
+        if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
         else:
@@ -67,11 +67,11 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_c, _ = 2*(0.0,) if reference is None else reference
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return (None,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
-        if radius_c > machine_scale_times_free_angle:
+        if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
         else:
@@ -87,11 +87,11 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_c, _ = 2*(0.0,) if reference is None else reference
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return None
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
-        if radius_c > machine_scale_times_free_angle:
+        if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
         else:

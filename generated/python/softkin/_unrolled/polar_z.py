@@ -27,7 +27,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_r = k.offset_r
     offset_z = k.offset_z
     single_c = k.single_c
-    machine_scale_times_free_angle = 1e-11*machine_scale
+    machine_scale_times_free_angle_2 = 1e-11*machine_scale
     no_offsets = not any((offset_c, offset_r, offset_z,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -39,7 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
             return (2,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
-        if radius_c > machine_scale_times_free_angle:
+        if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
         else:
@@ -71,7 +71,7 @@ def unrolled(k: Constants) -> Unrolled:
         ref_c, _, _ = 3*(0.0,) if reference is None else reference
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
-        if radius_c > machine_scale_times_free_angle:
+        if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
         else:
@@ -88,7 +88,7 @@ def unrolled(k: Constants) -> Unrolled:
         ref_c, _, _ = 3*(0.0,) if reference is None else reference
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
-        if radius_c > machine_scale_times_free_angle:
+        if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
         else:

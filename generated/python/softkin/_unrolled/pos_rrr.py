@@ -40,12 +40,12 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     swing_scale_q3_2 = k.swing_scale_q3_2
-    machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
-    machine_scale_times_free_angle = 1e-11*machine_scale
+    machine_scale_squared_times_plane_2 = 1e-6*machine_scale*machine_scale
+    machine_scale_times_free_angle_2 = 1e-11*machine_scale
     angle_of_a3_by_effective_q3_2 = arctan2(d4/effective_q3_2 + 0.0, a3/effective_q3_2 + 0.0)
-    swing_scale_q3_2_squared_times_rounding = 1e-12*swing_scale_q3_2*swing_scale_q3_2
-    a2_plus_effective_q3_2 = a2 + effective_q3_2
-    a2_minus_effective_q3_2 = a2 - effective_q3_2
+    swing_scale_q3_2_squared_times_rounding_2 = 1e-12*swing_scale_q3_2*swing_scale_q3_2
+    a2_plus_effective_q3_2_2 = a2 + effective_q3_2
+    a2_minus_effective_q3_2_2 = a2 - effective_q3_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -61,7 +61,7 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
@@ -85,7 +85,7 @@ def unrolled(k: Constants) -> Unrolled:
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -105,7 +105,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
             axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
         # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
+        if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_y = d3*y
             ahead_q1_before_q1_for_q3_times_x = ahead_q1_before_q1_for_q3*x
             divisor_q1 = distance_q1*distance_q1
@@ -134,7 +134,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
             axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
         # limits of A2, limits of A3
-        if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding:
+        if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2:
             refusal_front_down = (
                 0
                 if (axis_a2_front_down >= lowest_a2) and (axis_a3_front_down >= lowest_a3) and (
@@ -165,7 +165,7 @@ def unrolled(k: Constants) -> Unrolled:
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -194,7 +194,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
             axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
         # limits of A2, limits of A3
-        if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding:
+        if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2:
             refusal_back_down = (
                 0
                 if (axis_a2_back_down >= lowest_a2) and (axis_a3_back_down >= lowest_a3) and (
@@ -230,7 +230,7 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
@@ -250,9 +250,9 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_front = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding else 3  # q3: out of reach
+        refusal_front = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2 else 3  # q3: out of reach
         # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
+        if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_y = d3*y
             ahead_q1_before_q1_for_q3_times_x = ahead_q1_before_q1_for_q3*x
             divisor_q1 = distance_q1*distance_q1
@@ -273,7 +273,7 @@ def unrolled(k: Constants) -> Unrolled:
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_front_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -292,13 +292,13 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_back = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding else 3  # q3: out of reach
+        refusal_back = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_back_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -351,7 +351,7 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
@@ -365,15 +365,15 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # 1 - cosine, times the scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach)*(a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2)*(a2_minus_effective_q3_2_2 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        if not (sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding):
+        if not (sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2):
             return None
         # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
+        if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1*distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/divisor_q1
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/divisor_q1
@@ -385,7 +385,7 @@ def unrolled(k: Constants) -> Unrolled:
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_q2 = (
                 arctan2(-effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
                 - arctan2(wrist_x_from_q1, wrist_y_from_q1)

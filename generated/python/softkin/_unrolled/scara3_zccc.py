@@ -38,10 +38,10 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     single_a4 = k.single_a4
-    scale_a3_squared_times_rounding = 1e-12*scale_a3*scale_a3
-    machine_scale_times_free_angle = 1e-11*machine_scale
-    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+    scale_a3_squared_times_rounding_2 = 1e-12*scale_a3*scale_a3
+    machine_scale_times_free_angle_2 = 1e-11*machine_scale
+    link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
@@ -75,7 +75,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (sine_square_a3 >= -scale_a3_squared_times_rounding):
+        if not (sine_square_a3 >= -scale_a3_squared_times_rounding_2):
             return 2*(3,)
         axis_a1 = offset_a1 + z
         # limits of A1
@@ -85,7 +85,7 @@ def unrolled(k: Constants) -> Unrolled:
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3 + 0.0, link_length_1 + link_length_2*cos_a3 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
             angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
@@ -164,14 +164,14 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (sine_square_a3 >= -scale_a3_squared_times_rounding):
+        if not (sine_square_a3 >= -scale_a3_squared_times_rounding_2):
             return 2*(None,)
         axis_a1 = offset_a1 + z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
             angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
@@ -208,18 +208,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a3 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (sine_square_a3 >= -scale_a3_squared_times_rounding):
+        if not (sine_square_a3 >= -scale_a3_squared_times_rounding_2):
             return None
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
         else:
             angle_a2 = (ref_a2 - offset_a2)*DEGREE

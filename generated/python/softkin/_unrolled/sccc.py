@@ -42,11 +42,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
-    machine_scale_times_plane = 1e-6*machine_scale
-    scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
-    machine_scale_times_free_angle = 1e-11*machine_scale
-    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+    machine_scale_times_plane_2 = 1e-6*machine_scale
+    scale_a2_squared_times_rounding_2 = 1e-12*scale_a2*scale_a2
+    machine_scale_times_free_angle_2 = 1e-11*machine_scale
+    link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -66,7 +66,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 2*(3,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return 2*(3,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
@@ -82,13 +82,13 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
+        if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
             return 2*(3,)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
@@ -189,7 +189,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 2*(None,)
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return 2*(None,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
@@ -205,13 +205,13 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
+        if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
             return 2*(None,)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
@@ -273,7 +273,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return None
         # z: a planar machine has none
-        if not (abs(z) <= machine_scale_times_plane):
+        if not (abs(z) <= machine_scale_times_plane_2):
             return None
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
@@ -282,18 +282,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
+        if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
             return None
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
-        if reach > machine_scale_times_free_angle:
+        if reach > machine_scale_times_free_angle_2:
             angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE

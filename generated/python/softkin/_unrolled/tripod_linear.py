@@ -32,17 +32,17 @@ def unrolled(k: Constants) -> Unrolled:
     outer_radius = k.outer_radius
     sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
     sin_rail_angle = k.sin_rail_angle
-    arm_length_squared = arm_length*arm_length
-    cos_rail_angle_squared = cos_rail_angle*cos_rail_angle
-    inner_radius_minus_outer_radius = inner_radius - outer_radius
-    sin_rail_angle_squared = sin_rail_angle*sin_rail_angle
+    arm_length_squared_2 = arm_length*arm_length
+    cos_rail_angle_squared_2 = cos_rail_angle*cos_rail_angle
+    inner_radius_minus_outer_radius_2 = inner_radius - outer_radius
+    sin_rail_angle_squared_2 = sin_rail_angle*sin_rail_angle
     cos_rail_angle_times_sin_rail_angle_times_2 = 2.0*cos_rail_angle*sin_rail_angle
-    arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
+    arm_length_squared_times_rounding_2 = 1e-12*arm_length*arm_length
     inner_radius_by_2_minus_outer_radius_by_2 = 0.5*inner_radius - 0.5*outer_radius
     sin_rail_angle_squared_by_4 = 0.25*sin_rail_angle*sin_rail_angle
-    cos_rail_angle_times_sin_rail_angle = cos_rail_angle*sin_rail_angle
+    cos_rail_angle_times_sin_rail_angle_2 = cos_rail_angle*sin_rail_angle
     constant_part = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius
-    sin_rail_angle_squared_times_3_by_4 = 0.75*sin_rail_angle*sin_rail_angle
+    sin_rail_angle_squared_times_3_by_4_2 = 0.75*sin_rail_angle*sin_rail_angle
     root_of_3_times_sin_rail_angle_squared_by_2 = 0.5*root(3.0)*sin_rail_angle*sin_rail_angle
     constant_part_2 = root(3.0)*cos_rail_angle*sin_rail_angle
     one_by_2_by_arm_length = 0.5/arm_length
@@ -58,40 +58,40 @@ def unrolled(k: Constants) -> Unrolled:
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return 8*(2,)
-        part_of_root_square_a1 = arm_length_squared - z*z + z*z*cos_rail_angle_squared
-        span_1_x = x - inner_radius_minus_outer_radius  # rod 1
+        part_of_root_square_a1 = arm_length_squared_2 - z*z + z*z*cos_rail_angle_squared_2
+        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
             part_of_root_square_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
-            + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y
+            + span_1_x*span_1_x*sin_rail_angle_squared_2 - span_1_x*span_1_x - y*y
         )
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding):
+        if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
             return 8*(3,)
         span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
         part_of_root_square_a2 = (
             part_of_root_square_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
         )
-        part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle - part_of_root_square_a2
+        part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle_2 - part_of_root_square_a2
         span_2_y = y - constant_part  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
+            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4_2
             - part_of_root_square_a2_2 - span_2_y*span_2_y
             - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding):
+        if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
             return 8*(3,)
         span_3_y = constant_part + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
             root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
-            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4 - part_of_root_square_a2_2 - span_3_y*span_3_y
+            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4_2 - part_of_root_square_a2_2 - span_3_y*span_3_y
             - constant_part_2*span_3_y*z
         )
         # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding):
+        if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
             return 8*(3,)
         # ball joint of rod 1
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
@@ -150,7 +150,7 @@ def unrolled(k: Constants) -> Unrolled:
             rod_2_x_above*rod_3_z_above*y - rod_2_z_above*rod_3_x_above*y
         )
         if axis_a1_below >= lowest_a1 and axis_a1_below <= highest_a1:
-            pivot_1_x = inner_radius_minus_outer_radius + minus_a1*sin_rail_angle  # rod 1
+            pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
             rod_1_x = x - pivot_1_x
             pivot_1_z = minus_a1*cos_rail_angle  # rod 1
             rod_1_z = z - pivot_1_z
@@ -222,7 +222,7 @@ def unrolled(k: Constants) -> Unrolled:
         minus_a1 = middle_a1 + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         axis_a1_above = offset_a1 - minus_a1
         if axis_a1_above >= lowest_a1 and axis_a1_above <= highest_a1:
-            pivot_1_x = inner_radius_minus_outer_radius + minus_a1*sin_rail_angle  # rod 1
+            pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
             rod_1_x = x - pivot_1_x
             pivot_1_z = minus_a1*cos_rail_angle  # rod 1
             rod_1_z = z - pivot_1_z
@@ -337,40 +337,40 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        part_of_root_square_a1 = arm_length_squared - z*z + z*z*cos_rail_angle_squared
-        span_1_x = x - inner_radius_minus_outer_radius  # rod 1
+        part_of_root_square_a1 = arm_length_squared_2 - z*z + z*z*cos_rail_angle_squared_2
+        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
             part_of_root_square_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
-            + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y
+            + span_1_x*span_1_x*sin_rail_angle_squared_2 - span_1_x*span_1_x - y*y
         )
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding):
+        if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
             return 8*(None,)
         span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
         part_of_root_square_a2 = (
             part_of_root_square_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
         )
-        part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle - part_of_root_square_a2
+        part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle_2 - part_of_root_square_a2
         span_2_y = y - constant_part  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
+            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4_2
             - part_of_root_square_a2_2 - span_2_y*span_2_y
             - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding):
+        if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
             return 8*(None,)
         span_3_y = constant_part + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
             root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
-            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4 - part_of_root_square_a2_2 - span_3_y*span_3_y
+            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4_2 - part_of_root_square_a2_2 - span_3_y*span_3_y
             - constant_part_2*span_3_y*z
         )
         # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding):
+        if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
             return 8*(None,)
         # ball joint of rod 1
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
@@ -398,7 +398,7 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_type2_rods_coplanar = rod_2_x_below*rod_3_z_below*y - rod_2_z_below*rod_3_x_below*y
         middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
         minus_a1 = middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x = inner_radius_minus_outer_radius + minus_a1*sin_rail_angle  # rod 1
+        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
         pivot_1_z = minus_a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
@@ -473,7 +473,7 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         minus_a1 = middle_a1 + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x = inner_radius_minus_outer_radius + minus_a1*sin_rail_angle  # rod 1
+        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
         pivot_1_z = minus_a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
@@ -533,44 +533,45 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
-        span_1_x = x - inner_radius_minus_outer_radius  # rod 1
+        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + z*z*cos_rail_angle_squared + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
-            + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y - z*z
+            arm_length_squared_2 + z*z*cos_rail_angle_squared_2
+            + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2 + span_1_x*span_1_x*sin_rail_angle_squared_2
+            - span_1_x*span_1_x - y*y - z*z
         )
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding):
+        if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
             return None
         span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
         span_2_y = y - constant_part  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + constant_part_2*span_2_y*z + z*z*cos_rail_angle_squared
-            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
-            - span_2_x*span_2_x - span_2_y*span_2_y - z*z - span_2_x*z*cos_rail_angle_times_sin_rail_angle
+            arm_length_squared_2 + constant_part_2*span_2_y*z + z*z*cos_rail_angle_squared_2
+            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4_2
+            - span_2_x*span_2_x - span_2_y*span_2_y - z*z - span_2_x*z*cos_rail_angle_times_sin_rail_angle_2
             - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding):
+        if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
             return None
         span_3_y = constant_part + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + z*z*cos_rail_angle_squared
+            arm_length_squared_2 + z*z*cos_rail_angle_squared_2
             + root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
-            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4
+            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4_2
             - span_2_x*span_2_x - span_3_y*span_3_y - z*z - constant_part_2*span_3_y*z
-            - span_2_x*z*cos_rail_angle_times_sin_rail_angle
+            - span_2_x*z*cos_rail_angle_times_sin_rail_angle_2
         )
         # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding):
+        if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
             return None
         minus_a1 = (
             z*cos_rail_angle + span_1_x*sin_rail_angle
             - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
         )
-        pivot_1_x = inner_radius_minus_outer_radius + minus_a1*sin_rail_angle  # rod 1
+        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
         pivot_1_z = minus_a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z

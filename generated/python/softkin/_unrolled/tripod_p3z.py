@@ -42,8 +42,8 @@ def unrolled(k: Constants) -> Unrolled:
     tcp_displacement = k.tcp_displacement
     constant_part = rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1
     constant_part_2 = rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1
-    arm_length_squared = arm_length*arm_length
-    arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
+    arm_length_squared_2 = arm_length*arm_length
+    arm_length_squared_times_rounding_2 = 1e-12*arm_length*arm_length
     constant_part_3 = rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2
     constant_part_4 = rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2
     constant_part_5 = rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3
@@ -60,34 +60,34 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_x = constant_part + x  # rod 1
         span_1_y = constant_part_2 + y  # rod 1
         # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
+        root_square_a1 = arm_length_squared_2 - span_1_x*span_1_x - span_1_y*span_1_y
         if root_square_a1 > 0.0:
             a1 = z + sqrt(root_square_a1)
         else:
             # rod 1 cannot reach
-            if not (root_square_a1 >= -arm_length_squared_times_rounding):
+            if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
                 return 8*(3,)
             a1 = z
         span_2_x = constant_part_3 + x  # rod 2
         span_2_y = constant_part_4 + y  # rod 2
         # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
+        root_square_a2 = arm_length_squared_2 - span_2_x*span_2_x - span_2_y*span_2_y
         if root_square_a2 > 0.0:
             a2 = z + sqrt(root_square_a2)
         else:
             # rod 2 cannot reach
-            if not (root_square_a2 >= -arm_length_squared_times_rounding):
+            if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
                 return 8*(3,)
             a2 = z
         span_3_x = constant_part_5 + x  # rod 3
         span_3_y = constant_part_6 + y  # rod 3
         # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
+        root_square_a3 = arm_length_squared_2 - span_3_x*span_3_x - span_3_y*span_3_y
         if root_square_a3 > 0.0:
             a3 = z + sqrt(root_square_a3)
         else:
             # rod 3 cannot reach
-            if not (root_square_a3 >= -arm_length_squared_times_rounding):
+            if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
                 return 8*(3,)
             a3 = z
         rod_3_x = x - pivot_3_x
@@ -304,34 +304,34 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_x = constant_part + x  # rod 1
         span_1_y = constant_part_2 + y  # rod 1
         # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
+        root_square_a1 = arm_length_squared_2 - span_1_x*span_1_x - span_1_y*span_1_y
         if root_square_a1 > 0.0:
             a1 = z + sqrt(root_square_a1)
         else:
             # rod 1 cannot reach
-            if not (root_square_a1 >= -arm_length_squared_times_rounding):
+            if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
                 return 8*(None,)
             a1 = z
         span_2_x = constant_part_3 + x  # rod 2
         span_2_y = constant_part_4 + y  # rod 2
         # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
+        root_square_a2 = arm_length_squared_2 - span_2_x*span_2_x - span_2_y*span_2_y
         if root_square_a2 > 0.0:
             a2 = z + sqrt(root_square_a2)
         else:
             # rod 2 cannot reach
-            if not (root_square_a2 >= -arm_length_squared_times_rounding):
+            if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
                 return 8*(None,)
             a2 = z
         span_3_x = constant_part_5 + x  # rod 3
         span_3_y = constant_part_6 + y  # rod 3
         # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
+        root_square_a3 = arm_length_squared_2 - span_3_x*span_3_x - span_3_y*span_3_y
         if root_square_a3 > 0.0:
             a3 = z + sqrt(root_square_a3)
         else:
             # rod 3 cannot reach
-            if not (root_square_a3 >= -arm_length_squared_times_rounding):
+            if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
                 return 8*(None,)
             a3 = z
         rod_3_x = x - pivot_3_x
@@ -465,34 +465,34 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_x = constant_part + x  # rod 1
         span_1_y = constant_part_2 + y  # rod 1
         # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
+        root_square_a1 = arm_length_squared_2 - span_1_x*span_1_x - span_1_y*span_1_y
         if root_square_a1 > 0.0:
             a1 = z + sqrt(root_square_a1)*sigma_carriage_1
         else:
             # rod 1 cannot reach
-            if not (root_square_a1 >= -arm_length_squared_times_rounding):
+            if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
                 return None
             a1 = z
         span_2_x = constant_part_3 + x  # rod 2
         span_2_y = constant_part_4 + y  # rod 2
         # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
+        root_square_a2 = arm_length_squared_2 - span_2_x*span_2_x - span_2_y*span_2_y
         if root_square_a2 > 0.0:
             a2 = z + sqrt(root_square_a2)*sigma_carriage_2
         else:
             # rod 2 cannot reach
-            if not (root_square_a2 >= -arm_length_squared_times_rounding):
+            if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
                 return None
             a2 = z
         span_3_x = constant_part_5 + x  # rod 3
         span_3_y = constant_part_6 + y  # rod 3
         # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
+        root_square_a3 = arm_length_squared_2 - span_3_x*span_3_x - span_3_y*span_3_y
         if root_square_a3 > 0.0:
             a3 = z + sqrt(root_square_a3)*sigma_carriage_3
         else:
             # rod 3 cannot reach
-            if not (root_square_a3 >= -arm_length_squared_times_rounding):
+            if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
                 return None
             a3 = z
         rod_1_x = x - pivot_1_x

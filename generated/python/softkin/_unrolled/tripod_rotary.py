@@ -39,7 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     arm_1_radius_minus_fixed_length_1 = arm_1_radius - fixed_length_1
-    arm_length_1_times_shortest_link = 1e-9*arm_length_1
+    arm_length_1_times_shortest_link_2 = 1e-9*arm_length_1
     arm_length_1_times_2 = 2.0*arm_length_1
     constant_part = 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
     arm_1_radius_by_2_minus_fixed_length_1_by_2 = 0.5*arm_1_radius - 0.5*fixed_length_1
@@ -66,9 +66,9 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > arm_length_1_times_shortest_link):
+        if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return 8*(3,)
-        divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = (
@@ -408,9 +408,9 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > arm_length_1_times_shortest_link):
+        if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return 8*(None,)
-        divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = (
@@ -652,9 +652,9 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > arm_length_1_times_shortest_link):
+        if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
+        divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = (

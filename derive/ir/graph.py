@@ -1,0 +1,174 @@
+"""Values as a graph: each value is one node, whatever names it has in a program.
+
+    (b - a) / d   and   (a - b) * c / d       one node for a - b, read with a minus sign by the first
+
+Nodes are hash-consed: equal operations on equal parts are the same node. A minus sign is no node: it stands beside the
+node that is read, and the sign in front of a sum or of a product is moved to its reader. So a value and its negative are
+one node, and a cosine does not know the sign of its angle. A sum keeps its terms in the order in which they were first
+written, and is the same sum in any order. Nothing is expanded, and nothing that was written apart is put together.
+
+Names, notes and statements are not part of the graph: see `derive.lowering.draft` and `writing`.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import sympy as sp
+
+from derive.ir.primitives import Select, ToReal
+from derive.ir.symbols import is_count
+
+SUM, PRODUCT = sp.Add, sp.Mul
+Head = Any
+"""A name or a positive number; or what is done with the parts: `SUM`, `PRODUCT`, a primitive, a comparison, AND, OR."""
+_EVEN = (sp.cos, sp.Abs)
+_ODD = (sp.sin, ToReal)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Node:
+    """A value: `place` is larger than those of its parts."""
+
+    place: int
+    head: Head
+    parts: tuple[Value, ...] = ()
+    """Terms, factors (whose signs are +1) or arguments."""
+    divisors: tuple[Node, ...] = ()
+    """Of a product: what it is divided by."""
+
+    @property
+    def is_leaf(self) -> bool:
+        """Whether it is a name or a number."""
+        return not self.parts and not self.divisors
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it is a number."""
+        return isinstance(self.head, sp.Number)
+
+    def sources(self) -> tuple[Node, ...]:
+        """The nodes that it reads."""
+        return (*(part.node for part in self.parts), *self.divisors)
+
+
+class Value(NamedTuple):
+    """A node, and whether it is read with a minus sign."""
+
+    node: Node
+    sign: int
+
+    def __neg__(self) -> Value:
+        return Value(self.node, -self.sign)
+
+
+@dataclass
+class Graph:
+    """All nodes that have been made, by what they are."""
+
+    nodes: list[Node] = field(default_factory=list)
+    _known: dict[object, Node] = field(default_factory=dict)
+
+    def leaf(self, head: sp.Basic) -> Value:
+        """A name, a truth, or a number, whose sign is taken off."""
+        if isinstance(head, sp.Number) and head < 0:
+            return Value(self._node(-head, -head), -1)
+        return Value(self._node(head, head), 1)
+
+    def sum(self, terms: Iterable[Value]) -> Value:
+        """The sum; equal terms are counted, opposite ones cancel, numbers are added."""
+        number, counts = sp.Integer(0), dict[Node, int]()
+        for term in terms:
+            if term.node.is_number:
+                number += term.sign * term.node.head
+            else:
+                counts[term.node] = counts.get(term.node, 0) + term.sign
+        kept = [self._times(count, node) for node, count in counts.items() if count]
+        kept += [self.leaf(number)] if number != 0 else []
+        if len(kept) < 2:
+            return kept[0] if kept else self.leaf(number)
+        sign = min(kept, key=lambda v: v.node.place).sign
+        signed = tuple(Value(v.node, sign * v.sign) for v in kept)
+        return Value(self._node((SUM, frozenset(signed)), SUM, signed), sign)
+
+    def product(self, factors: Iterable[Value], divisors: Iterable[Value] = ()) -> Value:
+        """The product of factors over the product of divisors; numbers are multiplied, signs taken off."""
+        number, sign = sp.Integer(1), 1
+        above, below = list[Node](), list[Node]()
+        for value, side in (*((f, above) for f in factors), *((d, below) for d in divisors)):
+            sign *= value.sign
+            if value.node.is_number:
+                number *= value.node.head if side is above else 1 / value.node.head
+            else:
+                side.append(value.node)
+        if number == 0:
+            return self.leaf(sp.Integer(0))
+        if number != 1:
+            above.insert(0, self.leaf(number).node)
+        if not below and len(above) < 2:
+            return Value(above[0], sign) if above else self.leaf(sp.Integer(sign))
+        key = PRODUCT, frozenset(Counter(above).items()), frozenset(Counter(below).items())
+        return Value(self._node(key, PRODUCT, tuple(Value(f, 1) for f in above), tuple(below)), sign)
+
+    def apply(self, head: type[sp.Basic], arguments: Sequence[Value]) -> Value:
+        """A primitive, a comparison, AND or OR of its arguments; what is decided is not asked."""
+        parts = tuple(arguments)
+        if head is Select:
+            return self._choice(*parts)
+        if head in _EVEN or head in _ODD:
+            sign = parts[0].sign if head in _ODD else 1
+            return Value(self._called(head, (Value(parts[0].node, 1),)).node, sign)
+        return self._called(head, parts)
+
+    def _called(self, head: type[sp.Basic], parts: tuple[Value, ...]) -> Value:
+        if all(p.node.is_number or p.node.head in (sp.true, sp.false) for p in parts):
+            decided = head(*(p.sign * p.node.head if p.node.is_number else p.node.head for p in parts))
+            if decided in (sp.true, sp.false) or isinstance(decided, sp.Rational | sp.Float):
+                return self.leaf(decided)
+        if issubclass(head, sp.And | sp.Or):
+            return self._logic(head, parts)
+        return Value(self._node((head, parts), head, parts), 1)
+
+    def _logic(self, head: type[sp.Basic], parts: Sequence[Value]) -> Value:
+        decides, idle = (sp.false, sp.true) if issubclass(head, sp.And) else (sp.true, sp.false)
+        kept = tuple(dict.fromkeys(p for p in parts if p.node.head != idle))
+        if any(p.node.head == decides for p in kept):
+            return self.leaf(decides)
+        if len(kept) < 2:
+            return kept[0] if kept else self.leaf(idle)
+        return Value(self._node((head, frozenset(kept)), head, kept), 1)
+
+    def _choice(self, condition: Value, first: Value, second: Value) -> Value:
+        if condition.node.head in (sp.true, sp.false):
+            return first if condition.node.head == sp.true else second
+        if first == second:
+            return first
+        sign = -1 if first.sign < 0 and (second.sign < 0 or second.node.head == 0) else 1
+        parts = condition, Value(first.node, sign * first.sign), Value(second.node, sign * second.sign)
+        if second.node.head == 0:
+            parts = (*parts[:2], Value(second.node, 1))
+        return Value(self._node((Select, parts), Select, parts), sign)
+
+    def _times(self, count: int, node: Node) -> Value:
+        return Value(node, count) if abs(count) == 1 else self.product([self.leaf(sp.Integer(count)), Value(node, 1)])
+
+    def _node(
+        self, key: object, head: Head, parts: tuple[Value, ...] = (), divisors: tuple[Node, ...] = ()
+    ) -> Node:
+        known = self._known.get(key)
+        if known is None:
+            known = self._known[key] = Node(len(self.nodes), head, parts, divisors)
+            self.nodes.append(known)
+        return known
+
+
+def is_whole(node: Node) -> bool:
+    """Whether names of whole numbers make it one."""
+    if node.is_leaf:
+        return is_count(node.head)
+    if node.head in (SUM, PRODUCT, sp.Abs, Select):
+        return any(is_whole(part.node) for part in node.parts)
+    return False

@@ -1,0 +1,36 @@
+"""What a refusal has decided is not asked again, where a program ends at its first refusal.
+
+    require(length > tolerance)
+    divisor = select(length > tolerance, length, 1)      →  length is read where divisor was
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.ir.passes import with_inputs
+from derive.ir.program import Let, Output, Program, Require, Statement, rewritten
+
+
+def decided(program: Program) -> Program:
+    """The program for a language that returns where a condition does not hold."""
+    known: dict[sp.Basic, sp.Basic] = {}
+    body: list[Statement] = []
+
+    def read(expression: sp.Basic) -> sp.Basic:
+        return expression.xreplace(known)
+
+    for statement in program.body:
+        changed = rewritten(statement, read)
+        if isinstance(changed, Let) and changed != statement and changed.value.is_Symbol:
+            known[changed.name] = changed.value
+            continue
+        if isinstance(changed, Require):
+            if changed.condition == sp.true:
+                continue
+            known |= dict.fromkeys(sp.And.make_args(changed.condition), sp.true)
+        body.append(changed)
+    outputs = tuple(Output(o.name, o.value.xreplace(known)) for o in program.outputs)
+    return with_inputs(replace(program, body=tuple(body), outputs=outputs))

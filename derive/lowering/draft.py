@@ -1,0 +1,215 @@
+"""Programs as drafts: their values in a graph, and a table of what stands where and under which name.
+
+A draft is read from a program, changed, and written as a program again. A name belongs to a value: two statements that bind
+equal values bind one name, and a value that is read twice without a name gets one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+import sympy as sp
+
+from derive.ir.graph import PRODUCT, Graph, Node, Value
+from derive.ir.program import Iterate, Let, Program, Statement, expressions, told
+
+_WHOLE = sp.Integer
+
+
+@dataclass(frozen=True)
+class Named:
+    """What a node is called: `name` is bound to the node, or to its negative."""
+
+    name: sp.Symbol
+    sign: int
+    note: str
+    order: int
+    """Where the program bound it."""
+    turn_of: str = ""
+    """See `Let`."""
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A statement that is no binding, and the values of its expressions."""
+
+    statement: Statement
+    read: tuple[tuple[sp.Basic, Value], ...]
+    told: tuple[tuple[sp.Basic, Value], ...]
+    """What is computed where it refuses, and nowhere else."""
+    order: int
+
+    @property
+    def values(self) -> tuple[Value, ...]:
+        """What it reads."""
+        return tuple(value for _, value in self.read)
+
+    def changed(self, change: Callable[[Value], Value]) -> Effect:
+        """The same with every value changed."""
+        read, told = (tuple((e, change(v)) for e, v in pairs) for pairs in (self.read, self.told))
+        return replace(self, read=read, told=told)
+
+
+@dataclass(frozen=True)
+class Loop:
+    """An iteration: what it starts from, the statements of its step, and when it is done and what follows."""
+
+    statement: Iterate
+    start: tuple[Value, ...]
+    step: tuple[Effect | Node, ...]
+    ending: tuple[Value, ...]
+    order: int
+
+
+Item = Effect | Loop
+
+
+@dataclass
+class Draft:
+    """A program between reading and writing."""
+
+    program: Program
+    items: list[Item]
+    outputs: tuple[Value, ...]
+    names: dict[Node, Named]
+
+
+@dataclass
+class Reader:
+    """Reads programs into one graph."""
+
+    graph: Graph = field(default_factory=Graph)
+
+    def draft(self, program: Program) -> Draft:
+        """The draft of a program."""
+        reading = _Reading(self.graph)
+        items = [item for order, s in enumerate(program.body) for item in reading.items(s, order)]
+        outputs = tuple(reading.value(o.value) for o in program.outputs)
+        return Draft(program, items, outputs, reading.names)
+
+
+@dataclass
+class _Reading:
+    graph: Graph
+    names: dict[Node, Named] = field(default_factory=dict)
+    _bound: dict[sp.Basic, Value] = field(default_factory=dict)
+    """What has been read: names, and expressions of them."""
+
+    def items(self, statement: Statement, order: int) -> Iterator[Item]:
+        """What a statement is in a draft: nothing but a name for a binding."""
+        if isinstance(statement, Let):
+            self._bind(statement, order)
+        elif isinstance(statement, Iterate):
+            yield self._loop(statement, order)
+        else:
+            yield self._effect(statement, order)
+
+    def _bind(self, let: Let, order: int) -> Node | None:
+        """Name a value; None where it has a name, or needs none."""
+        value = self.value(let.value)
+        self._bound[let.name] = value
+        if value.node.is_leaf or value.node in self.names:
+            return None
+        self.names[value.node] = Named(let.name, value.sign, let.note, order, let.turn_of)
+        return value.node
+
+    def _effect(self, statement: Statement, order: int) -> Effect:
+        read, refused = (tuple((e, self.value(e)) for e in found(statement)) for found in (expressions, told))
+        return Effect(statement, read, refused, order)
+
+    def _loop(self, loop: Iterate, order: int) -> Loop:
+        start = tuple(map(self.value, loop.start))
+        step: list[Effect | Node] = []
+        for inner in loop.step:
+            if isinstance(inner, Let):
+                node = self._bind(inner, order)
+                step += [] if node is None else [node]
+            else:
+                step.append(self._effect(inner, order))
+        ending = tuple(map(self.value, (loop.done, *loop.following)))
+        return Loop(loop, start, tuple(step), ending, order)
+
+    def value(self, expression: sp.Basic) -> Value:
+        """An expression as a value of the graph."""
+        known = self._bound.get(expression)
+        if known is None:
+            known = self._bound[expression] = self._read(expression)
+        return known
+
+    def _read(self, e: sp.Basic) -> Value:
+        if not e.args or isinstance(e, sp.Number):
+            return self.graph.leaf(e)
+        if isinstance(e, sp.Add):
+            return self.graph.sum(map(self.value, e.args))
+        if isinstance(e, sp.Mul | sp.Pow):
+            above, below = list[Value](), list[Value]()
+            for factor in sp.Mul.make_args(e):
+                base, exponent = factor.as_base_exp() if isinstance(factor, sp.Pow) else (factor, _WHOLE(1))
+                (above if exponent > 0 else below).extend([self.value(base)] * abs(int(exponent)))
+            return self.graph.product(above, below)
+        return self.graph.apply(e.func, [self.value(a) for a in e.args])
+
+
+def changed(draft: Draft, change: Callable[[Value], Value]) -> Draft:
+    """The draft with every value changed. Two names of what becomes one value become one."""
+    names: dict[Node, Named] = {}
+    for node, named in draft.names.items():
+        value = change(Value(node, 1))
+        if not value.node.is_leaf and value.node not in names:
+            names[value.node] = replace(named, sign=named.sign * value.sign)
+    items = [_changed(item, change) for item in draft.items]
+    return Draft(draft.program, items, tuple(map(change, draft.outputs)), names)
+
+
+def _changed(item: Item, change: Callable[[Value], Value]) -> Item:
+    if isinstance(item, Effect):
+        return item.changed(change)
+    step: list[Effect | Node] = []
+    for inner in item.step:
+        if isinstance(inner, Node):
+            step.append(change(Value(inner, 1)).node)
+        else:
+            step.append(inner.changed(change))
+    start, ending = tuple(map(change, item.start)), tuple(map(change, item.ending))
+    return replace(item, start=start, step=tuple(step), ending=ending)
+
+
+class Rewriting:
+    """A change of values from the leaves up: `rewritten` says what becomes of a node whose parts have been changed."""
+
+    def __init__(self, graph: Graph) -> None:
+        self.graph = graph
+        self._done: dict[Node, Value] = {}
+
+    def __call__(self, value: Value) -> Value:
+        """What becomes of a value."""
+        pending = [value.node]
+        while pending:
+            node = pending[-1]
+            missing = [n for n in node.sources() if n not in self._done]
+            if node in self._done or not missing:
+                pending.pop()
+                if node not in self._done:
+                    self._done[node] = self.rewritten(node, tuple(self._read(p) for p in node.parts))
+            pending += missing if node not in self._done else []
+        return self._read(value)
+
+    def _read(self, value: Value) -> Value:
+        done = self._done[value.node]
+        return Value(done.node, done.sign * value.sign)
+
+    def divisors(self, node: Node) -> list[Value]:
+        """The divisors of a product, changed."""
+        return [self._done[d] for d in node.divisors]
+
+    def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
+        """What becomes of a node, given its changed parts."""
+        if node.is_leaf:
+            return Value(node, 1)
+        if node.head is sp.Add:
+            return self.graph.sum(parts)
+        if node.head is PRODUCT:
+            return self.graph.product(parts, self.divisors(node))
+        assert isinstance(node.head, type)
+        return self.graph.apply(node.head, parts)

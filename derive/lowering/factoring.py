@@ -1,0 +1,71 @@
+"""Factoring: a factor or a divisor that terms of a sum have in common is multiplied or divided once.
+
+    a * c / d + b * s / d    →  (a * c + b * s) / d
+    s * x - s * y + x        →  s * (x - y) + x
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Collection, Sequence
+
+from derive.ir.graph import PRODUCT, SUM, Graph, Node, Value
+from derive.lowering.draft import Rewriting
+
+Part = tuple[Node, bool]
+"""A factor, or a divisor where the flag is set."""
+
+
+class Factoring(Rewriting):
+    """Takes what most terms have in common in front of them, then looks at the rest. What has a name is one factor."""
+
+    def __init__(self, graph: Graph, named: Collection[Node], is_constant: Callable[[Node], bool]) -> None:
+        super().__init__(graph)
+        self._named, self._is_constant = named, is_constant
+        self._whole: set[Node] = set()
+        """What has a name, changed."""
+
+    def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
+        """A sum with common factors in front."""
+        is_open = node.head is SUM and not self._is_constant(node)
+        value = self._factored(parts) if is_open else super().rewritten(node, parts)
+        if node in self._named:
+            self._whole.add(value.node)
+        return value
+
+    def _factored(self, terms: Sequence[Value]) -> Value:
+        counts = Counter[Part]()
+        for term in terms:
+            counts.update(list(dict.fromkeys(self._parts(term.node))))
+        best = max(counts, key=lambda part: (counts[part], part[1], -part[0].place), default=None)
+        if best is None or counts[best] < 2:
+            return self.graph.sum(terms)
+        having = [t for t in terms if best in self._parts(t.node)]
+        inner = self._factored([self._without(t, best) for t in having])
+        common = Value(best[0], 1)
+        first = self._times(inner, common, is_divisor=best[1])
+        others = [t for t in terms if best not in self._parts(t.node)]
+        return self._factored([first, *others]) if others else first
+
+    def _without(self, term: Value, part: Part) -> Value:
+        """A term without one of its factors or divisors."""
+        factors, divisors = [f.node for f in term.node.parts], list(term.node.divisors)
+        (divisors if part[1] else factors).remove(part[0])
+        value = self.graph.product([Value(f, 1) for f in factors], [Value(d, 1) for d in divisors])
+        return Value(value.node, value.sign * term.sign)
+
+    def _times(self, inner: Value, common: Value, *, is_divisor: bool) -> Value:
+        """A sum times or over what its terms had in common: its own factors stay beside that."""
+        node = inner.node
+        is_open = node.head is PRODUCT and node not in self._whole
+        factors = [Value(f.node, 1) for f in node.parts] if is_open else [Value(node, 1)]
+        divisors = [Value(d, 1) for d in node.divisors] if is_open else []
+        (divisors if is_divisor else factors).append(common)
+        value = self.graph.product(factors, divisors)
+        return Value(value.node, value.sign * inner.sign)
+
+    def _parts(self, node: Node) -> list[Part]:
+        """The factors and the divisors of a term that is a product."""
+        if node.head is not PRODUCT or node in self._whole:
+            return []
+        return [*((f.node, False) for f in node.parts), *((d, True) for d in node.divisors)]

@@ -1,0 +1,83 @@
+"""What a value without a name is called: `a2_plus_a3`, `x_by_reach`, `part_of_axis_a1`."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable
+
+import sympy as sp
+
+from derive.ir.constants import FREE_ANGLE, PLANE, ROUNDING, SHORTEST_LINK
+from derive.ir.graph import PRODUCT, SUM, Node, Value
+from derive.ir.primitives import Atan2, Root, ToReal
+
+_WORDS = {
+    sp.Integer(1): "one",
+    sp.Rational(1, 2): "half",
+    FREE_ANGLE: "free_angle",
+    ROUNDING: "rounding",
+    SHORTEST_LINK: "shortest_link",
+    PLANE: "plane",
+}
+_MULTIPLES = {sp.Integer(2): "twice", sp.Rational(1, 2): "half"}
+_READABLE = re.compile(r"(?=.{1,40}$)[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_FUNCTIONS = {sp.sin: "sin", sp.cos: "cos", sp.Abs: "size", Root: "root", Atan2: "angle", ToReal: "real"}
+
+Called = Callable[[Node], sp.Symbol | None]
+
+
+def said(value: Value, called: Called, reader: str) -> str:
+    """A value in words, or as a part of what reads it where that cannot be said. called: the names of nodes."""
+    text = _words(value, called)
+    if text is not None and _READABLE.match(text):
+        return text
+    return f"part_of_{reader.removeprefix('part_of_')}" if reader else "part"
+
+
+def _words(value: Value, called: Called) -> str | None:
+    """A sum of names, a product of names, a function of a name; None for what would need parentheses."""
+    node = value.node
+    if node.head is SUM:
+        terms = sorted((Value(t.node, value.sign * t.sign) for t in node.parts), key=lambda t: t.sign < 0)
+        said_terms = [(t.sign, _factor(t.node, called)) for t in terms]
+        if any(word is None for _, word in said_terms):
+            return None
+        return "".join(("_minus_" if sign < 0 else "_plus_") + str(word) for sign, word in said_terms).removeprefix("_plus_")
+    return _factor(node, called)
+
+
+def _factor(node: Node, called: Called) -> str | None:
+    """What can stand in a sum."""
+    atom = _atom(node, called)
+    if node.head is not PRODUCT or atom is not None:
+        return atom
+    above = sorted((f.node for f in node.parts), key=lambda n: n.is_number)
+    if len(above) == 2 and above[1].head in _MULTIPLES and not node.divisors:
+        word = _atom(above[0], called)
+        return None if word is None else f"{_MULTIPLES[above[1].head]}_{word}"
+    words, below = ([_power(f, times, called) for f, times in Counter(side).items()] for side in (above, node.divisors))
+    if any(word is None for word in (*words, *below)):
+        return None
+    return "_by_".join(["_times_".join(map(str, words)) or "one", *map(str, below)])
+
+
+def _power(node: Node, times: int, called: Called) -> str | None:
+    """A factor and how often it is one."""
+    word = _atom(node, called)
+    return word if word is None or times == 1 else f"{word}_squared" if times == 2 else None
+
+
+def _atom(node: Node, called: Called) -> str | None:
+    """What can stand in a product."""
+    own = called(node)
+    if own is not None:
+        return str(own.name)
+    if node.head is PRODUCT and len(node.parts) == 2 and node.parts[0] == node.parts[1] and not node.divisors:
+        inner = _atom(node.parts[0].node, called)
+        return None if inner is None else f"{inner}_squared"
+    if node.is_leaf:
+        return _WORDS.get(node.head, str(node.head).replace("/", "_by_"))
+    word = _FUNCTIONS.get(node.head)
+    inner = None if word is None else _atom(node.parts[-1].node, called)
+    return None if inner is None else f"{word}_of_{inner}"

@@ -1,0 +1,267 @@
+"""A draft as a program: a value that has a name is bound before it is first read, and so is one that is read twice.
+
+Statements keep their order; a binding stands just before the first statement that reads it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+import sympy as sp
+from sympy.logic.boolalg import Boolean
+
+from derive.ir.graph import PRODUCT, SUM, Node, Value, is_whole
+from derive.ir.names import Names
+from derive.ir.passes import with_inputs
+from derive.ir.primitives import Select
+from derive.ir.program import Let, Output, Program, Solve, Statement, binds, rewritten
+from derive.ir.symbols import count
+from derive.lowering.draft import Draft, Effect, Item, Named
+from derive.lowering.wording import said
+
+_WHOLE = count("whole")
+"""Some whole number: what is computed of such has the type of it."""
+
+
+def written(draft: Draft, constants: Mapping[Node, Named], taken: Iterable[str] = ()) -> Program:
+    """The program of a draft. constants: what is bound elsewhere; taken: names that are not free."""
+    elsewhere = {named.name.name for named in constants.values()}
+    writer = _Writer(draft, dict(constants), Names({*taken, *elsewhere, *_names_in(draft)}))
+    body = tuple(writer.statements())
+    outputs = tuple(Output(o.name, writer.text(v)) for o, v in zip(draft.program.outputs, draft.outputs, strict=True))
+    return with_inputs(replace(draft.program, body=(*body, *writer.last), outputs=outputs))
+
+
+def _names_in(draft: Draft) -> Iterator[str]:
+    program = draft.program
+    yield from (s.name for s in (*program.inputs, *program.bound()))
+    yield from (named.name.name for named in draft.names.values())
+
+
+@dataclass
+class _Writer:
+    draft: Draft
+    constants: dict[Node, Named]
+    free: Names
+    last: list[Statement] = field(default_factory=list)
+    """What the outputs alone need."""
+
+    def __post_init__(self) -> None:
+        self.names = {n: named for n, named in self.draft.names.items() if n not in self.constants}
+        self.bound: set[Node] = set(self.constants)
+        self._texts: dict[Node, sp.Expr] = {n: named.sign * named.name for n, named in self.constants.items()}
+        self._name_what_is_read_twice()
+
+    # --- names
+
+    def _name_what_is_read_twice(self) -> None:
+        readers = Counter[Node]()
+        first: dict[Node, Node | None] = {}
+        seen: set[Node] = set()
+
+        def look(values: Iterable[Value], reader: Node | None) -> None:
+            pending = [(value.node, reader) for value in reversed(tuple(values))]
+            while pending:
+                node, user = pending.pop()
+                if node.is_leaf or node in self.constants:
+                    continue
+                readers[node] += 1
+                first.setdefault(node, user)
+                if node in seen:
+                    continue
+                seen.add(node)
+                above = node if node in self.names else user
+                pending += [(source, above) for source in reversed(node.sources())]
+
+        for item in self.draft.items:
+            look(read_values(item), None)
+        look(self.draft.outputs, None)
+        for node in sorted((n for n, times in readers.items() if times > 1), key=lambda n: n.place):
+            if node not in self.names and not is_condition(node) and not _is_slight(node):
+                self.names[node] = self._new_name(node, first[node])
+
+    def _new_name(self, node: Node, reader: Node | None) -> Named:
+        """A name for a value that has none, with the sign that gives it fewer minus signs."""
+        known = None if reader is None else self.names.get(reader) or self.constants.get(reader)
+        value = Value(node, self._better_sign(node))
+        proposal = said(value, self._called, "" if known is None else known.name.name)
+        order = len(self.draft.program.body) if known is None else known.order
+        return Named(self.free.fresh(proposal, _WHOLE if is_whole(node) else None), value.sign, "", order)
+
+    def _called(self, node: Node) -> sp.Symbol | None:
+        named = self.names.get(node) or self.constants.get(node)
+        return None if named is None else named.name
+
+    # --- statements
+
+    def statements(self) -> Iterator[Statement]:
+        """The statements, then in `last` what the outputs alone need."""
+        for item in self.draft.items:
+            yield from self._item(item)
+        self.last = list(self._bindings(self.draft.outputs))
+
+    def _item(self, item: Item) -> Iterator[Statement]:
+        if isinstance(item, Effect):
+            yield from self._effect(item)
+            return
+        yield from self._bindings(item.start)
+        state = {name for s in (item.statement,) for name in binds(s)}
+        outside = [n for n in self._needed(read_values(item)) if not self._reads(n, state)]
+        yield from self._let(outside)
+        step: list[Statement] = []
+        for inner in item.step:
+            if isinstance(inner, Effect):
+                step += self._effect(inner)
+            elif inner in self.names:
+                step += self._bindings([Value(inner, 1)])
+        step += self._bindings(item.ending)
+        done, *following = map(self.text, item.ending)
+        yield replace(
+            item.statement,
+            start=tuple(map(self.text, item.start)),
+            step=tuple(s for s in step if isinstance(s, Let | Solve)),
+            done=done,
+            following=tuple(following),
+        )
+
+    def _effect(self, effect: Effect) -> Iterator[Statement]:
+        yield from self._bindings(effect.values)
+        texts = {expression: self.text(value) for expression, value in (*effect.read, *effect.told)}
+        yield rewritten(effect.statement, texts.__getitem__)
+
+    def _bindings(self, values: Iterable[Value]) -> Iterator[Statement]:
+        """Bind what the values need, and is not bound yet."""
+        yield from self._let(self._needed(values))
+
+    def _let(self, nodes: Iterable[Node]) -> Iterator[Statement]:
+        for node in nodes:
+            named = self.names[node]
+            self.bound.add(node)
+            yield Let(named.name, self._spelled(node, named.sign), named.note, named.turn_of)
+            self._texts[node] = named.sign * named.name
+
+    def _needed(self, values: Iterable[Value]) -> list[Node]:
+        """The nodes with names that the values need, those that others need first, else in the order of the program."""
+        found: list[Node] = []
+        begun: set[Node] = set()
+
+        def provide(node: Node) -> None:
+            for inner in sorted(self._named_below(node.sources()), key=self._order):
+                visit(inner)
+
+        def visit(node: Node) -> None:
+            if node not in begun and node not in self.bound:
+                begun.add(node)
+                provide(node)
+                found.append(node)
+
+        for node in sorted(self._named_below(v.node for v in values), key=self._order):
+            visit(node)
+        return found
+
+    def _order(self, node: Node) -> tuple[int, int]:
+        return self.names[node].order, node.place
+
+    def _named_below(self, nodes: Iterable[Node]) -> set[Node]:
+        """The nearest nodes with names that are read, and not bound yet."""
+        found: set[Node] = set()
+        seen: set[Node] = set()
+        pending = list(nodes)
+        while pending:
+            node = pending.pop()
+            if node in self.bound or node in seen:
+                continue
+            seen.add(node)
+            if node in self.names:
+                found.add(node)
+            else:
+                pending += node.sources()
+        return found
+
+    def _reads(self, node: Node, names: set[sp.Symbol]) -> bool:
+        """Whether a node depends on one of these names."""
+        seen, pending = set[Node](), [node]
+        while pending:
+            here = pending.pop()
+            if here in seen:
+                continue
+            seen.add(here)
+            if here.head in names:
+                return True
+            pending += here.sources()
+        return False
+
+    # --- expressions
+
+    def text(self, value: Value) -> sp.Basic:
+        """A value as an expression of names."""
+        known = self._texts.get(value.node)
+        return self._spelled(*value) if known is None else -known if value.sign < 0 else known
+
+    def _spelled(self, node: Node, sign: int) -> sp.Basic:
+        """What a node is, or its negative."""
+        if node.is_leaf:
+            return sign * node.head if sign < 0 else node.head
+        if node.head is sp.Add:
+            return sp.Add(*(self.text(Value(t.node, sign * t.sign)) for t in node.parts))
+        if node.head is PRODUCT:
+            return self._product(node, sign)
+        if node.head is Select:
+            condition, *sides = node.parts
+            return Select(self.text(condition), *(self.text(Value(side.node, sign * side.sign)) for side in sides))
+        whole = node.head(*map(self.text, node.parts))
+        return -whole if sign < 0 else whole
+
+    def _product(self, node: Node, sign: int) -> sp.Expr:
+        """A product, each of its sums with the sign that gives it fewer minus signs."""
+        above, below = [Value(f.node, self._better_sign(f.node)) for f in node.parts], list(node.divisors)
+        for value in above:
+            sign *= value.sign
+        if sign < 0:  # as many signs as terms leave it open whose sign it is
+            place = next((k for k, v in enumerate(above) if self._is_open(v.node) and not _surplus(v.node)), 0)
+            above[place : place + 1] = [-above[place]] if above else []
+        factors = [self.text(f) for f in above] + [1 / self.text(Value(d, 1)) for d in below]
+        if sign < 0 and not above:
+            factors[0] = -factors[0]
+        numbers = [f for f in factors if f.is_number]
+        if len(factors) == 2 and numbers and any(f.is_Add for f in factors):
+            return sp.Mul(*sorted(factors, key=lambda f: not f.is_number), evaluate=False)  # else it would be expanded
+        return sp.Mul(*factors)
+
+    def _is_open(self, node: Node) -> bool:
+        """Whether it is a sum that is written out."""
+        return node.head is SUM and node not in self._texts
+
+    def _better_sign(self, node: Node) -> int:
+        surplus = _surplus(node) if self._is_open(node) else 1
+        return -1 if surplus < 0 or (surplus == 0 and node.parts[0].sign < 0) else 1
+
+
+def _surplus(node: Node) -> int:
+    """How many terms of a sum have no minus sign, less those that have one."""
+    return sum(part.sign for part in node.parts)
+
+
+def read_values(item: Item) -> Iterator[Value]:
+    """The values that a statement reads, those of a loop's step as well."""
+    if isinstance(item, Effect):
+        yield from item.values
+        return
+    yield from item.start
+    for inner in item.step:
+        yield from [Value(inner, 1)] if isinstance(inner, Node) else inner.values
+    yield from item.ending
+
+
+def is_condition(node: Node) -> bool:
+    return isinstance(node.head, type) and issubclass(node.head, Boolean)
+
+
+def _is_slight(node: Node) -> bool:
+    """Whether a value is written as easily as a name: the size of a name, a multiple of it."""
+    sources = node.sources()
+    if node.divisors or not all(n.is_leaf for n in sources):
+        return False
+    return node.head is sp.Abs or (node.head is PRODUCT and sum(not n.is_number for n in sources) < 2)

@@ -1,0 +1,150 @@
+"""Fewer operations, the same values: what is hoisted, factored, shared and divided once; random programs before and after."""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from derive.ir.interpret import run
+from derive.ir.passes import assemble
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Status
+from derive.ir.symbols import real
+from derive.lowering.lower import lowered
+from derive.report.cost import cost_of
+
+A, B, C, D, F, G, H, X, Y, Z = (real(n) for n in ("a", "b", "c", "d", "f", "g", "h", "x", "y", "z"))
+CONSTANTS = ("c", "d")
+
+
+def program(*lets: Let | Require, outputs: tuple[sp.Symbol, ...]) -> Program:
+    return assemble("program", lets, [Output(o.name, o) for o in outputs])
+
+
+def lets_of(one: Program) -> dict[str, sp.Expr]:
+    return {let.name.name: let.value for let in one.lets()}
+
+
+def test_what_depends_on_constants_alone_is_hoisted_under_words() -> None:
+    one = program(Let(F, X * C * D + Y), Let(G, C - D + X), outputs=(F, G))
+    (shorter,), hoisted = lowered([one], CONSTANTS)
+    assert {str(let.name): let.value for let in hoisted} == {"c_times_d": C * D, "c_minus_d": C - D}
+    assert lets_of(shorter) == {"f": X * real("c_times_d") + Y, "g": X + real("c_minus_d")}
+
+
+def test_a_hoisted_value_keeps_the_name_that_it_had() -> None:
+    one = program(Let(F, C + D), Let(G, F * X), outputs=(G,))
+    (shorter,), hoisted = lowered([one], CONSTANTS)
+    assert [(let.name, let.value) for let in hoisted] == [(F, C + D)] and lets_of(shorter) == {"g": F * X}
+
+
+def test_two_programs_share_what_is_hoisted() -> None:
+    first, second = program(Let(F, C * D * X), outputs=(F,)), program(Let(G, C * D * Y), outputs=(G,))
+    _, hoisted = lowered([first, Program("other", second.inputs, second.body, second.outputs)], CONSTANTS)
+    assert len(hoisted) == 1
+
+
+def test_a_common_divisor_divides_once_and_a_common_factor_multiplies_once() -> None:
+    one = program(Let(F, X * A / B + Y * Z / B), Let(G, X * A - X * Z + Y), outputs=(F, G))
+    (shorter,), _ = lowered([one], ())
+    assert cost_of(shorter).divisions == 1 and cost_of(shorter).multiplications == 3
+
+
+def test_a_named_value_is_one_factor() -> None:
+    """What a rule of the solver named is not taken apart to find a factor in it."""
+    one = program(Let(F, X * A), Let(G, F + X * B), Let(H, F * Y), outputs=(G, H))
+    (shorter,), _ = lowered([one], ())
+    assert lets_of(shorter)["f"] == A * X and lets_of(shorter)["g"] == F + B * X
+
+
+def test_a_pair_of_terms_that_sums_have_in_common_is_added_once_whatever_its_sign() -> None:
+    one = program(Let(F, X - Y + A), Let(G, Y - X + B), outputs=(F, G))
+    (shorter,), _ = lowered([one], ())
+    assert cost_of(shorter).additions == 3 and len(shorter.lets()) == 3
+
+
+def test_what_divides_three_values_is_inverted() -> None:
+    one = program(*(Let(name, value / A) for name, value in zip((F, G, H), (X, Y, Z), strict=True)), outputs=(F, G, H))
+    (shorter,), _ = lowered([one], ())
+    assert cost_of(shorter).divisions == 1 and cost_of(shorter).multiplications == 3
+
+
+def test_an_equal_value_under_another_name_is_not_computed_again() -> None:
+    one = program(Let(F, X - Y), Let(G, Y - X), Let(H, G * F), outputs=(F, G, H))
+    (shorter,), _ = lowered([one], ())
+    assert [let.name for let in shorter.lets()] == [F, H] and shorter.outputs[1].value == -F
+
+
+def test_a_condition_stays_where_it_was_and_tells_what_it_told() -> None:
+    refusal = Require(sp.Gt(X * C * D, Y), Status.UNREACHABLE, "too far")
+    one = program(refusal, Let(F, X / Y), outputs=(F,))
+    (shorter,), _ = lowered([one], CONSTANTS)
+    (kept,) = shorter.requires()
+    assert kept.condition == sp.Gt(X * real("c_times_d"), Y) and (kept.otherwise, kept.note) == (Status.UNREACHABLE, "too far")
+
+
+def test_a_loop_keeps_what_moves_inside_and_what_stays_outside() -> None:
+    step = (Let(F, X * Y * A), Let(G, F + X * Y))
+    loop = Iterate((A,), (B,), step, (A + F,), sp.Le(G, 1), 3, Status.UNREACHABLE)
+    one = program(loop, outputs=(G,))
+    (shorter,), _ = lowered([one], ())
+    assert [let.name.name for let in shorter.lets()] == ["x_times_y"]
+    (inner,) = (s for s in shorter.body if isinstance(s, Iterate))
+    assert {name.name for s in inner.step if isinstance(s, Let) for name in (s.name,)} == {"f", "g"}
+
+
+def test_a_caller_calls_the_program_as_it_is_now() -> None:
+    shared = Program("shared", (X, C), (Let(F, X * C * C),), (Output("f", F),))
+    caller = assemble("caller", [Call(shared, ((X, Y),), (F,))], [Output("f", F)])
+    (inner, outer), _ = lowered([shared, caller], CONSTANTS)
+    (call,) = (s for s in outer.body if isinstance(s, Call))
+    assert call.program == inner and "c_squared" in {s.name for s in outer.inputs}
+
+
+LEAVES = st.sampled_from([X, Y, Z, C, D, sp.Integer(2), sp.Rational(1, 2), sp.Integer(-1)])
+
+
+@st.composite
+def expression(draw: st.DrawFn, names: list[sp.Symbol], depth: int = 3) -> sp.Expr:
+    """A total expression of these names: sums, products, quotients by what is at least one, choices, roots."""
+    leaf = st.one_of(LEAVES, st.sampled_from(names)) if names else LEAVES
+    if depth == 0 or draw(st.integers(0, 4)) == 0:
+        return draw(leaf)
+    parts = [draw(expression(names, depth - 1)) for _ in range(draw(st.integers(2, 3)))]
+    kind = draw(st.sampled_from(["sum", "product", "quotient", "choice", "root", "turn"]))
+    if kind == "sum":
+        return sp.Add(*(draw(st.sampled_from([1, -1])) * p for p in parts))
+    if kind == "product":
+        return sp.Mul(*parts)
+    if kind == "quotient":
+        return parts[0] / (1 + parts[1] ** 2)
+    if kind == "choice":
+        return Select(sp.Gt(X, sp.Rational(1, 3)), parts[0], parts[1])
+    return Root(parts[0] ** 2 + parts[1] ** 2) if kind == "root" else sp.cos(parts[0]) + sp.sin(parts[1])
+
+
+@st.composite
+def random_program(draw: st.DrawFn) -> Program:
+    names: list[sp.Symbol] = []
+    lets = []
+    for k in range(draw(st.integers(2, 7))):
+        lets.append(Let(real(f"value_{k}"), draw(expression(list(names)))))
+        names.append(lets[-1].name)
+    return assemble("program", lets, [Output(name.name, name) for name in names[-3:]])
+
+
+@settings(max_examples=150)
+@given(random_program(), st.integers(0, 2**16))
+def test_values_stay_the_same(one: Program, seed: int) -> None:
+    (shorter,), hoisted = lowered([one], CONSTANTS)
+    rng = np.random.default_rng(seed)
+    given_ = {name: rng.uniform(-2.0, 2.0, 5) for name in "xyzcd"}
+    constants, _ = run(assemble("setup", hoisted, [Output(let.name.name, let.name) for let in hoisted]), given_)
+    before, _ = run(one, given_)
+    after, _ = run(shorter, {**given_, **constants})
+    for name, value in before.items():
+        size = 1.0 + np.max(np.abs(value))
+        assert np.allclose(np.broadcast_to(after[name], np.shape(value)), value, rtol=1e-9, atol=1e-9 * size)
+    assert sum(vars(cost_of(shorter)).values()) <= sum(vars(cost_of(one)).values())
