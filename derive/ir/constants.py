@@ -44,7 +44,7 @@ CONVERGED = sp.Float("1e-11")
 """An iteration has converged where what is left of a length is at most this share of the machine's scale."""
 NEARLY = sp.Float("1e-6")
 """A root of a search lies on a branch whose scaled margin it does not miss by more than this, the root of `BOUNDARY`."""
-TRIALS = 640
+TRIALS = 760
 """Trials of a search for a root, at most."""
 FINISHED = 12
 """Roots of a search that are looked at, at most."""

@@ -83,14 +83,6 @@ def _bound_behind(item: Item) -> set[sp.Symbol]:
     return holds & fails
 
 
-def bound_by(items: Iterable[Item]) -> tuple[sp.Symbol, ...]:
-    """Every name that the statements bind, on any side, each once."""
-    found: dict[sp.Symbol, None] = {}
-    for item in items:
-        found |= dict.fromkeys(bound_by((*item.holds, *item.fails)) if isinstance(item, Arms) else binds(item))
-    return tuple(found)
-
-
 def spared(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
     """Without what is bound on a first side for the second sides of later choices that the same condition decides.
 

@@ -45,7 +45,7 @@ from derive.report.reasons import NO_MEANING, reasons_of
 name = "python"
 _OF_THE_SEARCH = (
     *("ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
-    *("NEXT", "RESERVE", "RIM", "SEAM", "TOUCHED", "TURNED", "VANISHING"),
+    *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
 )
 
 _FIXED = (
@@ -130,7 +130,7 @@ def _templates() -> Environment:
         "largest": literal(float(LARGEST)),
         "rotation": rotation_functions(),
         "largest_error": literal(float(ROTATION)),
-        "search_constants": {name: literal(getattr(roots, name)) for name in _OF_THE_SEARCH},
+        "search_constants": {name: _literal(getattr(roots, name)) for name in _OF_THE_SEARCH},
         "exact": literal(float(EXACT_ROTATION)),
         "one_turn": literal(int(ONE_TURN)),
         "pivot": literal(float(PIVOT)),
@@ -143,6 +143,11 @@ def _templates() -> Environment:
         "no_meaning": NO_MEANING,
     }
     return templates
+
+
+def _literal(value: float | tuple[float, ...]) -> str:
+    """A constant of the search."""
+    return f"({', '.join(map(literal, value))})" if isinstance(value, tuple) else literal(value)
 
 
 def _after_docstring(source: str) -> str:

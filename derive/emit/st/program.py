@@ -28,11 +28,11 @@ from derive.ir.program import (
     Program,
     Require,
     Solve,
+    Statement,
     Status,
 )
 from derive.ir.types import type_of
 from derive.lowering.decided import decided
-from derive.optimize.control_flow import Arms, Item, bound_by, in_arms, told_on_sides
 
 _SHORT = 72
 """A selection that fits in this many columns stays on one line."""
@@ -61,14 +61,13 @@ def printed(
     """
     program = decided(program)
     stored = {**stored, **kept(program.body)}
-    items = told_on_sides(in_arms(program.body, [o.value for o in program.outputs]), program)
-    own = {name.name: name for name in bound_by(items) if name.name not in stored}
+    own = {name.name: name for name in program.bound() if name.name not in stored}
     temporaries = spellings(own, (*taken, *LOCALS, OUTCOME))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
     return Printed(
         variables=tuple((temporaries[name], type_name(type_of(symbol))) for name, symbol in own.items()),
         declarations=(*declarations(program.body), *_outcome(program, refusal)),
-        body="\n".join(_body(items, printer, refusal)),
+        body="\n".join(_body(program.body, printer, refusal)),
         outputs={o.name: printer.print(o.value) for o in program.outputs},
     )
 
@@ -78,13 +77,10 @@ def _outcome(program: Program, refusal: Refusal) -> Iterator[str]:
         yield f"{OUTCOME} : {refusal.type};"
 
 
-def _body(body: Sequence[Item], printer: StructuredText, refusal: Refusal) -> Iterator[str]:
+def _body(body: Sequence[Statement], printer: StructuredText, refusal: Refusal) -> Iterator[str]:
     for kind, group in groupby(body, key=lambda s: _kind(s, printer)):
         statements = list(group)
         first = statements[0]
-        if isinstance(first, Arms):
-            yield from _arms(first, printer, refusal)
-            continue
         if isinstance(first, Solve):
             yield from commented([*solve_lines(first, printer), ""], respelled(first.note, printer.names))
             continue
@@ -109,13 +105,13 @@ def _body(body: Sequence[Item], printer: StructuredText, refusal: Refusal) -> It
 Kind = tuple[Status | str | None, object, bool]
 
 
-def _kind(statement: Item, printer: StructuredText) -> Kind:
+def _kind(statement: Statement, printer: StructuredText) -> Kind:
     """What statements in a row have in common that are printed together.
 
     Conditions that refuse alike, about the same subject, are one condition. Those on the size of inputs stay apart: AND
     evaluates both sides, and what follows them is defined only where they hold. Selections by one condition are one IF.
     """
-    if isinstance(statement, Arms | Solve | Iterate | Call | FindRoot):
+    if isinstance(statement, Solve | Iterate | Call | FindRoot):
         return None, statement, False
     if isinstance(statement, Require):
         subject = None if statement.reason is None else statement.reason.subject
@@ -123,15 +119,6 @@ def _kind(statement: Item, printer: StructuredText) -> Kind:
     if isinstance(statement.value, Select):
         return printer.print(statement.value.args[0]), "", False
     return None, "", False
-
-
-def _arms(arms: Arms, printer: StructuredText, refusal: Refusal) -> Iterator[str]:
-    """A choice and what each of its sides needs."""
-    yield from wrapped(f"IF {printer.print(arms.condition)} THEN")
-    yield from indented(list(_body(arms.holds, printer, refusal)))
-    yield "ELSE"
-    yield from indented(list(_body(arms.fails, printer, refusal)))
-    yield "END_IF"
 
 
 def _notes(lets: Sequence[Let], names: Mapping[str, str]) -> str:

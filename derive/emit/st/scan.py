@@ -26,6 +26,7 @@ _STACKED, _PLACES = 60, 48
 SEARCH = {
     "cells": roots.CELLS,
     "closing": roots.CLOSING,
+    "shifts": roots.SHIFTS,
     "trials": TRIALS - roots.RESERVE,
     "finished": FINISHED,
     "stacked": _STACKED,

@@ -25,10 +25,11 @@ NEXT = 1e-6
 RESERVE = 126
 RIM = 0.999
 SEAM = 0.001
+SHIFTS = (0.5, 0.25)
 TOUCHED = 1e-12
 TURNED = 0.7
 VANISHING = 1e-10
-_TRIALS = 640
+_TRIALS = 760
 _FINISHED = 12
 _PLACE = ("tried", "side", "freed", "freed_angle")
 _THIRD = 2.0 * pi / 3.0
@@ -70,20 +71,28 @@ def _finished(
     trial: Callable[[Values], Any], finish: Callable[[Values], Any], start: float, trial_given: Values, finish_given: Values,
     scan: Scan, most: int,
 ) -> Iterator[Values]:
-    places = _Search(_of(trial, trial_given)).roots(start, _scanned(scan, start, trial_given))
-    places.sort(key=lambda place: abs((place[0] - start + pi) % (2.0 * pi) - pi))
-    at = _of(finish, finish_given)
-    for place in places[:most]:
-        values = at(place)
-        if values[0]:
-            yield values
+    search, at, looked_at = _Search(_of(trial, trial_given)), _of(finish, finish_given), 0
+    for shift in SHIFTS:
+        if shift != SHIFTS[0] and search.trials + CELLS > _TRIALS - RESERVE:
+            return
+        places = search.roots(start, shift, _scanned(scan, start, shift, trial_given))
+        places.sort(key=lambda place: abs((place[0] - start + pi) % (2.0 * pi) - pi))
+        is_there = False
+        for place in places[: most - looked_at]:
+            values = at(place)
+            if values[0]:
+                is_there = True
+                yield values
+        if is_there:
+            return
+        looked_at = min(most, looked_at + len(places))
 
 
-def _scanned(scan: Scan, start: float, given: Values) -> list[Said]:
+def _scanned(scan: Scan, start: float, shift: float, given: Values) -> list[Said]:
     """What the trial says at the ends of the first cells, none of which is the start; asked for all of them at once."""
     import numpy as np
 
-    joint = start + 2.0 * pi / CELLS * (np.arange(CELLS) + 0.5)
+    joint = start + 2.0 * pi / CELLS * (np.arange(CELLS) + shift)
     place = {"tried": joint, "side": 1, "freed": -1, "freed_angle": 0.0}
     with np.errstate(all="ignore"):
         said = scan(tuple(place[v] if isinstance(v, str) else v for v in given), np.zeros(CELLS, np.uint8))
@@ -113,14 +122,15 @@ class _Search:
         self.found: list[Place] = []
         self.trials = 0
 
-    def roots(self, start: float, ends: list[Said]) -> list[Place]:
+    def roots(self, start: float, shift: float, ends: list[Said]) -> list[Place]:
         """Every root, and more that only a look at the whole closure tells from roots; in no order."""
         width = 2.0 * pi / CELLS
+        self.found = []
         self.trials += CELLS
         said = [(value, slope * width, guard, rate * width, *rest) for value, slope, guard, rate, *rest in ends]
         self.offer(start, 0.0, False, 0.0, self.said(start, 0.0, False, 0.0))
         for k in range(CELLS):
-            cells: list[Cell] = [(start + (k + 0.5) * width, width, False, 0, 0.0, said[k], 1.0, said[(k + 1) % CELLS])]
+            cells: list[Cell] = [(start + (k + shift) * width, width, False, 0, 0.0, said[k], 1.0, said[(k + 1) % CELLS])]
             while cells:
                 cells += self.cut(cells.pop())
         return self.found

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,12 @@ from numpy.typing import NDArray
 Reals = NDArray[np.float64]
 Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
+T = TypeVar("T")
 
 CELLS = 72
 """The circle is cut into so many cells at first."""
+SHIFTS = (0.5, 0.25)
+"""How far behind the start the first cell begins, in cells; where no root fits, the circle is cut otherwise, once more."""
 ROUNDS = 50
 """Cells are cut again at most so often."""
 CLOSING = 60
@@ -126,12 +129,12 @@ def joined(*parts: Cells) -> Cells:
     return Cells(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Cells)))
 
 
-def find_roots(trial: Trial, start: Reals) -> At:
+def find_roots(trial: Trial, start: Reals, shift: float = SHIFTS[0]) -> At:
     """Every root of every row, and more that only a look at the whole closure tells from roots; in no order."""
     if not len(start):
         none = np.zeros(0, dtype=int)
         return At(none, start, none, none, start)
-    cells = _around(trial, start)
+    cells = _around(trial, start, shift)
     found = [_start(trial, start)]
     ends, holding = [cells.take(np.zeros(0, dtype=int))], [cells.take(np.zeros(0, dtype=int))]
     for _ in range(2 * ROUNDS):  # what is closed in on waits until nothing is cut any more: it is one loop for all rows
@@ -153,7 +156,22 @@ def find_roots(trial: Trial, start: Reals) -> At:
 
 def nearest(trial: Trial, finish: Finish, start: Reals) -> tuple[Flags, Reals]:
     """Whether a row has a root that fits, and what `finish` says at the nearest of them."""
-    place = find_roots(trial, start)
+    found, answer = _nearest(trial, finish, start, SHIFTS[0])
+    for shift in SHIFTS[1:]:
+        rows = np.flatnonzero(~found)
+        if len(rows):
+            again, values = _nearest(_of_rows(trial, rows), _of_rows(finish, rows), start[rows], shift)
+            found[rows], answer[rows] = again, values
+    return found, answer
+
+
+def _of_rows(asked: Callable[[At], T], rows: Rows) -> Callable[[At], T]:
+    """What is asked, of some rows alone."""
+    return lambda place: asked(place._replace(rows=rows[place.rows]))
+
+
+def _nearest(trial: Trial, finish: Finish, start: Reals, shift: float) -> tuple[Flags, Reals]:
+    place = find_roots(trial, start, shift)
     is_wanted, values = finish(place)
     away = place.joint - start[place.rows]
     away = np.abs(away - 2.0 * np.pi * np.round(away / (2.0 * np.pi)))
@@ -186,14 +204,14 @@ def _start(trial: Trial, start: Reals) -> At:
     return At(rows[is_root], start[is_root], place.side[is_root], place.freed[is_root], place.angle[is_root])
 
 
-def _around(trial: Trial, start: Reals) -> Cells:
+def _around(trial: Trial, start: Reals, shift: float) -> Cells:
     """The first cells: number 0 of every row, then number 1, and so on.
 
     None ends at the start, where value and guard may vanish.
     """
     count, width = len(start), 2.0 * np.pi / CELLS
     rows = np.tile(np.arange(count), CELLS)
-    base = (start[None, :] + width * (np.arange(CELLS)[:, None] + 0.5)).ravel()
+    base = (start[None, :] + width * (np.arange(CELLS)[:, None] + shift)).ravel()
     zero, one = np.zeros(len(rows)), np.ones(len(rows))
     empty = np.empty((len(rows), 0))
     cells = Cells(rows, base, np.full(len(rows), width), zero > 0.0, 0 * rows, zero, one, empty, empty)

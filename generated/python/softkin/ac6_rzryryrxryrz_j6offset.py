@@ -29,9 +29,9 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 149 additions, 189 multiplications, 22 divisions, 0 square roots, 14 sines
-    inverse: 66521 additions, 105731 multiplications, 7125 divisions, 2663 square roots, 4596 sines
-    inverse, all 16 branches open: 1063841 additions, 1691021 multiplications, 113865 divisions, 42578 square roots, 73536 sines
-    the search along A6: at most 640 passes, all of which are counted
+    inverse: 76241 additions, 122051 multiplications, 8205 divisions, 3143 square roots, 5316 sines
+    inverse, all 16 branches open: 1219361 additions, 1952141 multiplications, 131145 divisions, 50258 square roots, 85056 sines
+    the search along A6: at most 760 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
 answers with the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist,
