@@ -102,7 +102,7 @@ def opposite(condition: Truth) -> Truth:
     return ~condition if isinstance(condition, np.ndarray) else not condition
 
 
-def elsewhere(condition: Truth, values: Reals, other: Callable[..., Reals], given: Values) -> Reals:
+def elsewhere(condition: Truth, values: Values, other: Callable[..., Values], given: Values) -> Values:
     """The values where a condition holds; in the other rows, what `other` makes of what is given there."""
     if everywhere(condition):
         return values
@@ -120,7 +120,7 @@ def _replaced(value: Real, rows: NDArray[np.intp], new: Real, shape: tuple[int, 
     return whole
 
 
-def refused(status: Codes, refusal: Whole) -> Codes:
+def refused(status: Codes, refusal: Any) -> Codes:
     """The statuses of a slot: those of all slots, else its own, which come as numbers."""
     if not isinstance(refusal, np.ndarray) and refusal == 0:
         return status
@@ -128,7 +128,7 @@ def refused(status: Codes, refusal: Whole) -> Codes:
     return np.where(status == Status.OK, codes, status) if status.any() else np.broadcast_to(codes, status.shape)
 
 
-def initial(*values: Real) -> Reals:
+def initial(*values: Real) -> Values:
     """The state before the first pass."""
     return values
 
@@ -138,7 +138,7 @@ def settled(done: Truth, status: Codes) -> bool:
     return bool(np.all(done | (status != Status.OK)))
 
 
-def advanced(done: Truth, state: Reals, following: Reals) -> Reals:
+def advanced(done: Truth, state: Reals, following: Reals) -> Values:
     """The state for the next pass: rows that are done keep theirs."""
     return tuple(np.where(done, old, new) for old, new in zip(state, following, strict=True))
 

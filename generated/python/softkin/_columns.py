@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -135,7 +135,7 @@ def _number(column: Bytes) -> Whole:
     return int(column[0]) if (column == column[0]).all() else column.astype(np.int64)
 
 
-def _at(value: Whole, rows: Rows) -> Whole:
+def _at(value: Any, rows: Rows) -> Any:
     return value[rows] if isinstance(value, np.ndarray) else value
 
 

@@ -14,7 +14,7 @@ from derive.kinematics.build import build
 from derive.pipeline import languages
 kin = build(load(MECHANISMS / "mc_kin_type_12_xy.py"))
 for language in languages():
-    for name, text in sorted(language.render([kin]).items()):
+    for name, text in sorted(language.files([language.part(kin)]).items()):
         print(name, text)
 """
 

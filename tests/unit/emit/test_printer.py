@@ -23,6 +23,7 @@ from derive.ir.primitives import (
     NearestPeriod,
     Root,
     Select,
+    Wrap,
 )
 from derive.ir.program import (
     Let,
@@ -111,7 +112,7 @@ PROGRAM = Program(
         Require(sp.Le(sp.Abs(Y), 100), Status.BAD_INPUT, "finite"),
         Let(real("size"), Root(X**2 + Y**2), "the distance from the origin"),
         Require(sp.Gt(real("size"), 1), Status.UNREACHABLE),
-        Let(real("turned"), Select(sp.And(X > 0, Y > 0), Atan2(Y, X), -real("size")) * real("scale")),
+        Let(real("turned"), Select(sp.And(X > 0, Y > 0), Wrap(Atan2(Y, X)), -real("size")) * real("scale")),
     ),
     (Output("size", real("size")), Output("turned", real("turned"))),
 )

@@ -27,7 +27,8 @@ TURN = Let(AXIS, NearestPeriod(Atan2(S, C) / DEGREE, N), turn_of="A1")
 
 def refusing(amount: sp.Expr) -> Program:
     require = Require(sp.Gt(R, 0), Status.UNREACHABLE, reason=about("it", Why.TOO_LARGE, amount))
-    earlier = Require(sp.Le(ANGLE, 3), Status.UNREACHABLE, reason=about("angle", Why.TOO_LARGE))
+    turned = NearestPeriod(ANGLE / DEGREE, sp.Integer(0))
+    earlier = Require(sp.Le(turned, 175), Status.UNREACHABLE, reason=about("angle", Why.TOO_LARGE))
     return assemble("p", [*DIRECTION, Let(ANGLE, Atan2(S, C)), earlier, require, TURN], [Output("axis", AXIS)])
 
 

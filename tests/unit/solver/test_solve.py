@@ -21,6 +21,7 @@ from derive.ir.interpret import run
 from derive.ir.passes import assemble
 from derive.ir.primitives import (
     Atan2,
+    Wrap,
 )
 from derive.ir.program import (
     Let,
@@ -245,7 +246,7 @@ def test_turns_count_once_they_are_chosen() -> None:
 
     def resolve(angle: sp.Symbol) -> tuple[Let, ...]:
         turned.append(angle)
-        return (Let(angle, Atan2(sine(angle), cosine(angle)) + TURN),)
+        return (Let(angle, Wrap(Atan2(sine(angle), cosine(angle))) + TURN),)
 
     derivation = solve(case.problem, case.arguments, resolve)
     assert turned == [A1]
