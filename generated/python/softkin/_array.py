@@ -20,10 +20,10 @@ __all__ = [
 ]  # fmt: skip
 
 Array: TypeAlias = NDArray[np.float64]
-Real: TypeAlias = NDArray[np.floating[Any]] | float
-"""A value for every row, or one for all."""
+Real: TypeAlias = Any
+"""A number for every row, or one for all; the union of both would keep a type checker busy for minutes."""
 Reals: TypeAlias = tuple[Real, ...]
-Whole: TypeAlias = NDArray[np.int64] | int
+Whole: TypeAlias = Any
 Values: TypeAlias = tuple[Any, ...]
 """Numbers and truths together."""
 Signs: TypeAlias = tuple[Whole, ...]
