@@ -1,4 +1,4 @@
-"""The numerical constants of the product. Each stands here once and nowhere else, but for those of the scan in `roots`."""
+"""The numerical constants of the product. Each stands here once and nowhere else; those of a search: `cells`, `roots`."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from derive.ir.cells import At
 from derive.ir.constants import (
     DEGREE,
     EDGE,
@@ -36,7 +37,7 @@ from derive.ir.program import (
     Statement,
     Status,
 )
-from derive.ir.roots import At, nearest
+from derive.ir.roots import nearest
 from derive.ir.symbols import (
     PLACE,
     Flag,

@@ -20,7 +20,7 @@ from derive.emit.python.program import Method, array_body, functions, has_loop, 
 from derive.emit.python.refusal import explained
 from derive.emit.python.rotation import rotation_functions
 from derive.emit.python.unrolled import array_lines, array_method, can_be_unrolled, has_folds, unrolled
-from derive.ir import roots
+from derive.ir import cells, roots
 from derive.ir.constants import (
     EDGE,
     EXACT_ROTATION,
@@ -55,6 +55,7 @@ _FIXED = (
     "softkin/_array_programs/__init__.py",
     "softkin/_array_rotation.py",
     "softkin/_batch.py",
+    "softkin/_cells.py",
     "softkin/_columns.py",
     "softkin/_configuration.py",
     "softkin/_core.py",
@@ -130,11 +131,12 @@ def _templates() -> Environment:
         "largest": literal(float(LARGEST)),
         "rotation": rotation_functions(),
         "largest_error": literal(float(ROTATION)),
-        "search_constants": {name: _literal(getattr(roots, name)) for name in _OF_THE_SEARCH},
+        "search_constants": {name: _literal((vars(cells) | vars(roots))[name]) for name in _OF_THE_SEARCH},
         "exact": literal(float(EXACT_ROTATION)),
         "one_turn": literal(int(ONE_TURN)),
         "pivot": literal(float(PIVOT)),
         "singular": literal(float(SINGULAR)),
+        "cells": _after_docstring(Path(cells.__file__).read_text()),
         "roots": _after_docstring(Path(roots.__file__).read_text()),
         "trials": TRIALS,
         "finished": FINISHED,
@@ -151,9 +153,9 @@ def _literal(value: float | tuple[float, ...]) -> str:
 
 
 def _after_docstring(source: str) -> str:
-    """A module without its docstring and its first import."""
+    """A module without its docstring and its first import, as a part of the package."""
     text = source.split("from __future__ import annotations", 1)[1].strip()
-    return text.replace("from typing import NamedTuple", "from typing import Any, NamedTuple")
+    return text.replace("from derive.ir.cells", "from softkin._cells").replace("import TypeVar", "import Any, TypeVar")
 
 
 def _index(kin: Kinematics) -> dict[str, str]:

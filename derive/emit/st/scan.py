@@ -13,7 +13,7 @@ from derive.emit.st.expression import literal
 from derive.emit.st.layout import packed
 from derive.emit.st.names import joined
 from derive.emit.st.shared import method_name
-from derive.ir import roots
+from derive.ir import cells, roots
 from derive.ir.constants import FINISHED, TRIALS
 from derive.ir.program import FindRoot, Program
 from derive.ir.symbols import (
@@ -31,19 +31,19 @@ SEARCH = {
     "finished": FINISHED,
     "stacked": _STACKED,
     "places": _PLACES,
-    "aside": literal(roots.ASIDE),
-    "bent": literal(roots.BENT),
-    "near_zero": literal(roots.NEAR_ZERO),
+    "aside": literal(cells.ASIDE),
+    "bent": literal(cells.BENT),
+    "near_zero": literal(cells.NEAR_ZERO),
     "vanishing": literal(roots.VANISHING),
     "next": literal(roots.NEXT),
-    "touched": literal(roots.TOUCHED),
-    "finest": literal(roots.FINEST),
-    "seam": literal(roots.SEAM),
-    "turned": literal(roots.TURNED),
-    "narrow": literal(roots.NARROW),
+    "touched": literal(cells.TOUCHED),
+    "finest": literal(cells.FINEST),
+    "seam": literal(cells.SEAM),
+    "turned": literal(cells.TURNED),
+    "narrow": literal(cells.NARROW),
     "rim": literal(roots.RIM),
-    "gap": literal(roots.GAP),
-    "flat": literal(roots.FLAT),
+    "gap": literal(cells.GAP),
+    "flat": literal(cells.FLAT),
 }
 """The constants of a search, as the text reads them."""
 

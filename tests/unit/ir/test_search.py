@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from softkin._root import every_root
 from softkin._roots import CELLS
 
-from derive.ir.roots import At, find_roots
+from derive.ir.cells import At
+from derive.ir.roots import find_roots
 
 Array = NDArray[np.float64]
 Trial = Callable[[Array, Array, Array, Array], tuple[Array, ...]]

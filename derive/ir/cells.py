@@ -1,0 +1,215 @@
+"""Cells of a search along one joint, on arrays: what the ends of a cell say of the roots in it, and where it is cut.
+
+A trial is a function of the searched joint: a value that must vanish, with its slope; a guard that is negative where the
+trial has no solution, with its slope; and directions, the cosines and sines of angles that a partial step takes from a
+vector, which turn fast where that vector is short. The two roots under the guard are one curve: where the guard vanishes
+the curve goes over from one to the other. Such an end is looked at in s with joint = end + scale s², s > 0 on the wanted
+side and s < 0 on the other: there value is smooth. A cell is cut
+
+* where a direction turns by more than 45 degrees: so trials stand close where it turns;
+* where value has one sign at both ends, and its slopes say that it may touch zero in between;
+* where a cubic through values and slopes at both ends has more than one root, or nearly.
+
+The last two hold of the guard as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Reals = NDArray[np.float64]
+Rows = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+NARROW = 1e-10
+"""A cell narrower than this, over which a direction turns, is a jump (radians)."""
+FLAT = 1e-7
+"""Where the guard is on the other side for a shorter part of a cell than this, it is not noticed."""
+FINEST = 1e-15
+"""No cell is cut that is shorter than this share of it."""
+GAP = 1e-6
+"""A jump is looked at where the guard is not farther beyond zero at both ends."""
+NEAR_ZERO = 0.5
+"""A cubic hides two roots where it turns back below this share of the values at the ends."""
+BENT = 0.125
+"""So much of how slopes differ over a cell their tangents may stay away from zero, and there may be a root: it has kinks."""
+SEAM = 1e-3
+"""No cell is cut nearer to where the two sides meet: there a slope has no digits."""
+ASIDE = 0.47
+"""Where a cell is halved: not quite in the middle, where the two sides may meet and a slope has no size."""
+TURNED = 0.7
+"""The cosine of how far a direction may turn over a cell."""
+TOUCHED = 1e-12
+"""A value of this size may be zero where it only touches zero."""
+
+
+class At(NamedTuple):
+    """Where to try: the rows of the problem, the joint, the side (+1 is the wanted one), and what is free."""
+
+    rows: Rows
+    joint: Reals
+    side: Rows
+    freed: Rows
+    """The number of the direction that is given by `angle` instead, or -1."""
+    angle: Reals
+
+
+Trial = Callable[[At], Reals]
+"""The columns value, slope, guard, slope of the guard, then cosine and sine of every direction."""
+VALUE, SLOPE, GUARD, GUARD_SLOPE, DIRECTIONS = range(5)
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Intervals low < high of s, and what the trial says at both ends; slopes by s."""
+
+    rows: Rows
+    base: Reals
+    scale: Reals
+    curved: NDArray[np.bool_]
+    cuts: Rows
+    """How often it was cut."""
+    low: Reals
+    high: Reals
+    first: Reals
+    last: Reals
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def take(self, chosen: NDArray[np.bool_] | Rows) -> Cells:
+        """The chosen cells."""
+        return Cells(*(getattr(self, f.name)[chosen] for f in fields(self)))
+
+    def joint(self, s: Reals) -> Reals:
+        """The joint at s."""
+        return np.asarray(self.base + self.scale * np.where(self.curved, s * s, s))
+
+    def side(self, s: Reals) -> Rows:
+        """The side at s."""
+        return np.where(self.curved & (s < 0.0), -1, 1)
+
+    def at(self, trial: Trial, s: Reals) -> Reals:
+        """What the trial says at s."""
+        if not len(self):
+            return self.first
+        columns = trial(At(self.rows, self.joint(s), self.side(s), np.full(len(self), -1), np.zeros(len(self))))
+        rate = self.scale * np.where(self.curved, 2.0 * s, 1.0)
+        columns[:, SLOPE] *= rate
+        columns[:, GUARD_SLOPE] *= rate
+        return columns
+
+    def halves(self, trial: Trial, s: Reals) -> Cells:
+        """The cells cut at s."""
+        middle = self.at(trial, s)
+        left = replace(self, cuts=self.cuts + 1, high=s, last=middle)
+        right = replace(self, cuts=self.cuts + 1, low=s, first=middle)
+        return joined(left, right)
+
+
+def joined(*parts: Cells) -> Cells:
+    """All of them."""
+    return Cells(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Cells)))
+
+
+class Verdicts(NamedTuple):
+    """What becomes of every cell: at most one of these; none where it has no root."""
+
+    jumps: Flags
+    ends: Flags
+    """The guard vanishes in between."""
+    holds: Flags
+    """One root."""
+    touches: Flags
+    cut: Flags
+    by_guard: Flags
+    """Cut where the slopes of the guard say, not those of the value."""
+
+
+def look(cells: Cells) -> Verdicts:
+    width = cells.high - cells.low
+    (f, df, g, dg), (f1, df1, g1, dg1) = (e[:, :DIRECTIONS].T for e in (cells.first, cells.last))
+    turned = turned_over(cells)
+    fast = turned.min(axis=1, initial=1.0) < TURNED
+    wide = np.abs(cells.joint(cells.high) - cells.joint(cells.low)) > NARROW
+    jumps = fast & ~wide & ((g >= -GAP) | (g1 >= -GAP))
+    slow = ~fast
+    returns = slow & (width > FLAT) & ~cells.curved & _hides_roots(g, dg, g1, dg1, width)
+    ends = slow & ((g < 0.0) != (g1 < 0.0)) & ~cells.curved & ~returns
+    within = slow & ((g >= 0.0) & (g1 >= 0.0) | cells.curved)
+    seen = within & ~returns
+    changes = f * f1 <= 0.0
+    doubtful = seen & _hides_roots(f, df, f1, df1, width)
+    small = np.minimum(np.abs(f), np.abs(f1)) <= TOUCHED
+    seam = cells.curved & (cells.low >= -2.0 * SEAM) & (cells.high <= 2.0 * SEAM)
+    again = doubtful & ~small & (width > FINEST) & ~seam
+    touches = doubtful & (small | seam) & ~changes
+    holds = seen & changes & ~again
+    return Verdicts(jumps, ends, holds, touches, (fast & wide) | returns | again, returns)
+
+
+def turned_over(cells: Cells) -> Reals:
+    """The cosine of how far every direction turns over a cell: (cells, directions)."""
+    a, b = cells.first[:, DIRECTIONS:], cells.last[:, DIRECTIONS:]
+    return np.asarray(a[:, ::2] * b[:, ::2] + a[:, 1::2] * b[:, 1::2])
+
+
+def _hides_roots(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Flags:
+    """Whether there may be more roots within a cell than its ends tell."""
+    sign = np.where(f < 0.0, -1.0, 1.0)
+    crosses = (sign * (f + df * width) < 0.0) | (sign * (f1 - df1 * width) < 0.0)
+    waves = (f * f1 > 0.0) & (df * df1 > 0.0) & crosses  # a tangent leads to zero, and the value turns before and after
+    return waves | _comes_back(f, df, f1, df1, width) | _doubtful(f, df * width, f1, df1 * width)
+
+
+def _comes_back(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Flags:
+    """Whether a value that has one sign at both ends heads for zero at both, and its tangents meet beyond, or nearly there.
+
+    Where they do not meet in between it is bent both ways, and nobody knows. It has kinks, too: tangents are no bound.
+    """
+    margin = TOUCHED + NEAR_ZERO * np.minimum(np.abs(f), np.abs(f1)) + BENT * np.abs(df1 - df) * width
+    sign = np.where(f < 0.0, -1.0, 1.0)
+    rest = f1 - f - df1 * width  # between 0 and (df - df1) width where the tangents meet in between
+    is_bent = ~((rest * (df - df1) > 0.0) & (np.abs(rest) < np.abs(df - df1) * width))
+    lowest = sign * (f + df * _between(f, df, f1, df1, width))
+    return np.asarray((f * f1 > 0.0) & (sign * df < 0.0) & (sign * df1 > 0.0) & (is_bent | (lowest <= margin)))
+
+
+def _between(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Reals:
+    """How far behind the first end its tangent meets that of the last; half way where they do not."""
+    apart = df - df1
+    met = (f1 - f - df1 * width) / np.where(apart == 0.0, 1.0, apart)
+    return np.where((apart != 0.0) & (met > 0.0) & (met < width), met, ASIDE * width)
+
+
+def _doubtful(f: Reals, a: Reals, f1: Reals, b: Reals) -> Flags:
+    """Whether the cubic through values and slopes turns within the cell where it may hide two roots."""
+    rise = f1 - f
+    sign = np.where(np.where(f * f1 < 0.0, rise, f) < 0.0, -1.0, 1.0)
+    cube, square = a + b - 2.0 * rise, 3.0 * rise - 2.0 * a - b
+    radicand = square * square - 3.0 * cube * a
+    root, divisor = np.sqrt(np.maximum(radicand, 0.0)), np.where(cube == 0.0, 1.0, 3.0 * cube)
+    turns, lowest = np.zeros(len(f), dtype=bool), np.full(len(f), np.inf)
+    for u in ((-square - root) / divisor, (-square + root) / divisor):
+        inside = (radicand > 0.0) & (cube != 0.0) & (u > 0.0) & (u < 1.0)
+        turns |= inside
+        lowest = np.where(inside, np.minimum(lowest, sign * (f + u * (a + u * (square + u * cube)))), lowest)
+    three = (f * f1 < 0.0) & (sign * a >= 0.0) & (sign * b >= 0.0)
+    two = (f * f1 > 0.0) & (lowest <= NEAR_ZERO * np.minimum(np.abs(f), np.abs(f1)))
+    return np.asarray(turns & (three | two))
+
+
+def where_to_cut(cells: Cells, by_guard: Flags) -> Reals:
+    """Where to cut: where tangents meet, every third time in the middle, and always where a direction turns."""
+    width = cells.high - cells.low
+    column = np.where(by_guard, GUARD, VALUE)
+    f, df, f1, df1 = (e[np.arange(len(cells)), column + k] for e in (cells.first, cells.last) for k in (0, 1))
+    meets = np.clip(_between(f, df, f1, df1, width), 0.02 * width, 0.98 * width)
+    middle = (cells.cuts % 3 == 2) | (turned_over(cells).min(axis=1, initial=1.0) < TURNED)
+    s = cells.low + np.where(middle, ASIDE * width, meets)
+    beside = np.where(cells.high > 1.5 * SEAM, SEAM, -SEAM)
+    return np.where(cells.curved & (np.abs(s) < SEAM), beside, s)
