@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import sympy as sp
 from sympy.core.relational import Relational
@@ -32,7 +33,7 @@ def with_choices(program: Program, parameters: Sequence[Parameter]) -> Program:
     """The program with a choice wherever it calculates with a flag of the machine."""
     for name in (p.name for p in parameters if p.role is Role.FLAG):
         if real(name) in program.inputs:
-            body = tuple(rewritten(s, lambda e, name=name: _chosen(e, name)) for s in program.body)  # type: ignore[misc]
+            body = tuple(rewritten(s, partial(_chosen, name=name)) for s in program.body)
             outputs = tuple(Output(o.name, _chosen(o.value, name)) for o in program.outputs)
             program = with_inputs(replace(program, body=body, outputs=outputs))
     return program

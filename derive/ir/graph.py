@@ -4,8 +4,8 @@
 
 Nodes are hash-consed: equal operations on equal parts are the same node. A minus sign is no node: it stands beside the
 node that is read, and the sign in front of a sum or of a product is moved to its reader. So a value and its negative are
-one node, and a cosine does not know the sign of its angle. A sum keeps its terms in the order in which they were first
-written, and is the same sum in any order. Nothing is expanded, and nothing that was written apart is put together.
+one node, and a cosine does not know the sign of its angle. A sum is the same sum in any order. Nothing is expanded, and
+nothing that was written apart is put together.
 
 Names, notes and statements are not part of the graph: see `derive.lowering.draft` and `writing`.
 """
@@ -13,7 +13,7 @@ Names, notes and statements are not part of the graph: see `derive.lowering.draf
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -163,6 +163,18 @@ class Graph:
             known = self._known[key] = Node(len(self.nodes), head, parts, divisors)
             self.nodes.append(known)
         return known
+
+
+def reached(starts: Iterable[Node], is_end: Callable[[Node], bool] = lambda _: False) -> Iterator[Node]:
+    """These nodes and all that they read, each once; what an end reads is not looked at."""
+    seen: set[Node] = set()
+    pending = list(starts)
+    while pending:
+        node = pending.pop()
+        if node not in seen:
+            seen.add(node)
+            yield node
+            pending += () if is_end(node) else node.sources()
 
 
 def is_whole(node: Node) -> bool:

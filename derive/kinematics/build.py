@@ -185,7 +185,8 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
     """Everything together, with what depends on parameters alone moved into the setup."""
     parameters = machine_parameters(mechanism)
     constants = [o.name for o in setup_program(mechanism, parameters).outputs]
-    settled = [name for name in constants if name not in windows(mechanism)]  # drives may change those later
+    unsettled = windows(mechanism)  # drives may change these later
+    settled = [name for name in constants if name not in unsettled]
     whole, first = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], settled)
     shorter, second = lowered(whole, [*settled, *(let.name.name for let in first)])
     hoisted = (*first, *second)

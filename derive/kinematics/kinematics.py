@@ -87,7 +87,7 @@ class Kinematics:
     branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*; one branch, periods included, limits not
     search_given     as branch → what the search of that branch is given; None where there is a closed form
     from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None where no search gives the joints
-    derived_branch   the same, step by step as it was derived: what the fast functions of Python are made of
+    derived_branch   the same, step by step as it was derived: what is unrolled
     limits           axis_* → nothing; its conditions are the axis limits and the limits of coupled quantities
     singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size; also the length of a
                      margin that has one

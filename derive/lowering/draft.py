@@ -14,7 +14,7 @@ import sympy as sp
 from derive.ir.graph import PRODUCT, Graph, Node, Value
 from derive.ir.program import Iterate, Let, Program, Statement, expressions, told
 
-_WHOLE = sp.Integer
+_ONE = sp.Integer(1)
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,6 @@ class Effect:
     read: tuple[tuple[sp.Basic, Value], ...]
     told: tuple[tuple[sp.Basic, Value], ...]
     """What is computed where it refuses, and nowhere else."""
-    order: int
 
     @property
     def values(self) -> tuple[Value, ...]:
@@ -59,7 +58,6 @@ class Loop:
     start: tuple[Value, ...]
     step: tuple[Effect | Node, ...]
     ending: tuple[Value, ...]
-    order: int
 
 
 Item = Effect | Loop
@@ -103,7 +101,7 @@ class _Reading:
         elif isinstance(statement, Iterate):
             yield self._loop(statement, order)
         else:
-            yield self._effect(statement, order)
+            yield self._effect(statement)
 
     def _bind(self, let: Let, order: int) -> Node | None:
         """Name a value; None where it has a name, or needs none."""
@@ -114,9 +112,9 @@ class _Reading:
         self.names[value.node] = Named(let.name, value.sign, let.note, order, let.turn_of)
         return value.node
 
-    def _effect(self, statement: Statement, order: int) -> Effect:
+    def _effect(self, statement: Statement) -> Effect:
         read, refused = (tuple((e, self.value(e)) for e in found(statement)) for found in (expressions, told))
-        return Effect(statement, read, refused, order)
+        return Effect(statement, read, refused)
 
     def _loop(self, loop: Iterate, order: int) -> Loop:
         start = tuple(map(self.value, loop.start))
@@ -126,9 +124,9 @@ class _Reading:
                 node = self._bind(inner, order)
                 step += [] if node is None else [node]
             else:
-                step.append(self._effect(inner, order))
+                step.append(self._effect(inner))
         ending = tuple(map(self.value, (loop.done, *loop.following)))
-        return Loop(loop, start, tuple(step), ending, order)
+        return Loop(loop, start, tuple(step), ending)
 
     def value(self, expression: sp.Basic) -> Value:
         """An expression as a value of the graph."""
@@ -145,7 +143,7 @@ class _Reading:
         if isinstance(e, sp.Mul | sp.Pow):
             above, below = list[Value](), list[Value]()
             for factor in sp.Mul.make_args(e):
-                base, exponent = factor.as_base_exp() if isinstance(factor, sp.Pow) else (factor, _WHOLE(1))
+                base, exponent = factor.as_base_exp() if isinstance(factor, sp.Pow) else (factor, _ONE)
                 (above if exponent > 0 else below).extend([self.value(base)] * abs(int(exponent)))
             return self.graph.product(above, below)
         return self.graph.apply(e.func, [self.value(a) for a in e.args])
@@ -213,3 +211,21 @@ class Rewriting:
             return self.graph.product(parts, self.divisors(node))
         assert isinstance(node.head, type)
         return self.graph.apply(node.head, parts)
+
+
+def values_of(draft: Draft) -> Iterator[Value]:
+    """The values that the statements and the outputs of a draft read."""
+    for item in draft.items:
+        yield from read_values(item)
+    yield from draft.outputs
+
+
+def read_values(item: Item) -> Iterator[Value]:
+    """The values that a statement reads, those of a loop's step as well."""
+    if isinstance(item, Effect):
+        yield from item.values
+        return
+    yield from item.start
+    for inner in item.step:
+        yield from [Value(inner, 1)] if isinstance(inner, Node) else inner.values
+    yield from item.ending

@@ -11,13 +11,12 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.ir.constants import DEGREE
-from derive.ir.graph import PRODUCT, SUM, Graph, Node, Value
+from derive.ir.graph import PRODUCT, SUM, Graph, Node, Value, reached
 from derive.ir.names import Names
 from derive.ir.program import Let, Output, Program
-from derive.ir.symbols import count, is_count
-from derive.lowering.draft import Draft, Named, Rewriting
+from derive.lowering.draft import Draft, Named, Rewriting, values_of
 from derive.lowering.wording import said
-from derive.lowering.writing import is_condition, read_values, written
+from derive.lowering.writing import is_condition, written
 
 
 class Constant:
@@ -86,9 +85,9 @@ def hoisted(
     drafts: Sequence[Draft], constant: Constant, taken: Iterable[str]
 ) -> tuple[dict[Node, Named], tuple[Let, ...]]:
     """The constants that the drafts read, by name, and their bindings. taken: names that are not free."""
-    read = sorted({node for draft in drafts for node in _constants_read(draft, constant)}, key=lambda n: n.place)
+    read = {node for draft in drafts for node in _constants_read(draft, constant)}
     given = {node: named for draft in reversed(drafts) for node, named in draft.names.items()}
-    readers = _readers(drafts, constant)
+    readers = _readers(drafts)
     varying = {named.name.name for d in drafts for n, named in d.names.items() if not constant(n)}
     free = Names({*taken, *varying})
     names: dict[Node, Named] = {}
@@ -96,12 +95,11 @@ def hoisted(
     def called(node: Node) -> sp.Symbol | None:
         return names[node].name if node in names else None
 
-    inner = {n for top in read for n in _below(top) if n in given and not n.is_leaf}
-    for order, node in enumerate(sorted({*read, *inner}, key=lambda n: n.place)):
+    inner = {node for node in reached(read) if node in given}
+    for order, node in enumerate(sorted(read | inner, key=lambda n: n.place)):
         own = given.get(node)
         if own is not None:
-            like = count(own.name.name) if is_count(own.name) else None
-            names[node] = replace(own, name=free.fresh(own.name.name, like), order=order)
+            names[node] = replace(own, name=free.fresh(own.name.name, own.name), order=order)
             continue
         proposal = said(Value(node, 1), called, readers.get(node, "constant"))
         names[node] = Named(free.fresh(proposal), 1, "", order)
@@ -111,47 +109,21 @@ def hoisted(
     return names, program.lets()
 
 
-def _constants_read(draft: Draft, constant: Constant) -> set[Node]:
+def _constants_read(draft: Draft, constant: Constant) -> Iterator[Node]:
     """The largest constants that a draft reads: those that something else reads, or a statement."""
-    found: set[Node] = set()
-    seen: set[Node] = set()
-    pending = [value.node for item in draft.items for value in read_values(item)]
-    pending += [value.node for value in draft.outputs]
-    while pending:
-        node = pending.pop()
-        if node in seen or node.is_leaf:
-            continue
-        seen.add(node)
-        if constant(node) and not is_condition(node):
-            found.add(node)
-        else:
-            pending += node.sources()
-    return found
+
+    def is_largest(node: Node) -> bool:
+        return constant(node) and not node.is_leaf and not is_condition(node)
+
+    return filter(is_largest, reached((value.node for value in values_of(draft)), is_largest))
 
 
-def _below(top: Node) -> Iterator[Node]:
-    """What a node reads, whatever lies between."""
-    seen: set[Node] = set()
-    pending = list(top.sources())
-    while pending:
-        node = pending.pop()
-        if node not in seen:
-            seen.add(node)
-            yield node
-            pending += node.sources()
-
-
-def _readers(drafts: Sequence[Draft], constant: Constant) -> dict[Node, str]:
-    """The names of the values that read the constants first."""
+def _readers(drafts: Sequence[Draft]) -> dict[Node, str]:
+    """By what is read: the name of the value that reads it first."""
     found: dict[Node, str] = {}
     for draft in drafts:
         for reader, named in draft.names.items():
-            seen: set[Node] = set()
-            pending = list(reader.sources())
-            while pending:
-                node = pending.pop()
-                if node not in seen and node not in draft.names:
-                    seen.add(node)
+            for node in reached(reader.sources(), draft.names.__contains__):
+                if node not in draft.names:
                     found.setdefault(node, named.name.name)
-                    pending += node.sources()
     return found

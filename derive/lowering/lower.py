@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from derive.ir.graph import Graph, Node
+from derive.ir.graph import Graph, Node, reached
 from derive.ir.passes import calling
 from derive.ir.program import Let, Program
 from derive.lowering.dividing import Dividing
-from derive.lowering.draft import Draft, Effect, Reader, changed
+from derive.lowering.draft import Draft, Effect, Reader, changed, values_of
 from derive.lowering.factoring import Factoring
 from derive.lowering.hoisting import Constant, Gathering, hoisted
 from derive.lowering.sharing import Sharing
-from derive.lowering.writing import read_values, written
+from derive.lowering.writing import written
 
 
 def lowered(programs: Sequence[Program], constants: Collection[str]) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
@@ -34,17 +34,10 @@ def _shorter(draft: Draft, graph: Graph, constant: Constant) -> Draft:
     draft = changed(draft, Gathering(graph, constant))
     draft = changed(draft, Factoring(graph, draft.names, constant))
     draft = changed(draft, Gathering(graph, constant))
-    draft = changed(draft, Sharing(graph, nodes_of(draft), constant))
-    return changed(draft, Dividing(graph, nodes_of(draft), constant))
+    draft = changed(draft, Sharing(graph, _nodes(draft), constant))
+    return changed(draft, Dividing(graph, _nodes(draft), constant))
 
 
-def nodes_of(draft: Draft) -> set[Node]:
+def _nodes(draft: Draft) -> list[Node]:
     """All nodes that a draft reads."""
-    found: set[Node] = set()
-    pending = [v.node for item in draft.items for v in read_values(item)] + [v.node for v in draft.outputs]
-    while pending:
-        node = pending.pop()
-        if node not in found:
-            found.add(node)
-            pending += node.sources()
-    return found
+    return list(reached(value.node for value in values_of(draft)))

@@ -12,13 +12,13 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from derive.ir.graph import PRODUCT, SUM, Node, Value, is_whole
+from derive.ir.graph import PRODUCT, SUM, Node, Value, is_whole, reached
 from derive.ir.names import Names
 from derive.ir.passes import with_inputs
 from derive.ir.primitives import Select
 from derive.ir.program import Let, Output, Program, Solve, Statement, binds, rewritten
 from derive.ir.symbols import count
-from derive.lowering.draft import Draft, Effect, Item, Named
+from derive.lowering.draft import Draft, Effect, Item, Named, read_values
 from derive.lowering.wording import said
 
 _WHOLE = count("whole")
@@ -91,8 +91,14 @@ class _Writer:
         return Named(self.free.fresh(proposal, _WHOLE if is_whole(node) else None), value.sign, "", order)
 
     def _called(self, node: Node) -> sp.Symbol | None:
-        named = self.names.get(node) or self.constants.get(node)
-        return None if named is None else named.name
+        """The name of a value; of one that stays away from zero by a choice, the name of what it is elsewhere."""
+        for value in (_guarded(node), node):
+            if isinstance(value.head, sp.Symbol):
+                return value.head
+            named = self.names.get(value) or self.constants.get(value)
+            if named is not None:
+                return named.name
+        return None
 
     # --- statements
 
@@ -107,8 +113,8 @@ class _Writer:
             yield from self._effect(item)
             return
         yield from self._bindings(item.start)
-        state = {name for s in (item.statement,) for name in binds(s)}
-        outside = [n for n in self._needed(read_values(item)) if not self._reads(n, state)]
+        inside = set(binds(item.statement))
+        outside = [n for n in self._needed(read_values(item)) if not any(r.head in inside for r in reached([n]))]
         yield from self._let(outside)
         step: list[Statement] = []
         for inner in item.step:
@@ -166,32 +172,8 @@ class _Writer:
 
     def _named_below(self, nodes: Iterable[Node]) -> set[Node]:
         """The nearest nodes with names that are read, and not bound yet."""
-        found: set[Node] = set()
-        seen: set[Node] = set()
-        pending = list(nodes)
-        while pending:
-            node = pending.pop()
-            if node in self.bound or node in seen:
-                continue
-            seen.add(node)
-            if node in self.names:
-                found.add(node)
-            else:
-                pending += node.sources()
-        return found
-
-    def _reads(self, node: Node, names: set[sp.Symbol]) -> bool:
-        """Whether a node depends on one of these names."""
-        seen, pending = set[Node](), [node]
-        while pending:
-            here = pending.pop()
-            if here in seen:
-                continue
-            seen.add(here)
-            if here.head in names:
-                return True
-            pending += here.sources()
-        return False
+        found = reached(nodes, lambda node: node in self.bound or node in self.names)
+        return {node for node in found if node in self.names and node not in self.bound}
 
     # --- expressions
 
@@ -204,7 +186,7 @@ class _Writer:
         """What a node is, or its negative."""
         if node.is_leaf:
             return sign * node.head if sign < 0 else node.head
-        if node.head is sp.Add:
+        if node.head is SUM:
             return sp.Add(*(self.text(Value(t.node, sign * t.sign)) for t in node.parts))
         if node.head is PRODUCT:
             return self._product(node, sign)
@@ -244,18 +226,16 @@ def _surplus(node: Node) -> int:
     return sum(part.sign for part in node.parts)
 
 
-def read_values(item: Item) -> Iterator[Value]:
-    """The values that a statement reads, those of a loop's step as well."""
-    if isinstance(item, Effect):
-        yield from item.values
-        return
-    yield from item.start
-    for inner in item.step:
-        yield from [Value(inner, 1)] if isinstance(inner, Node) else inner.values
-    yield from item.ending
+def _guarded(node: Node) -> Node:
+    """What a divisor is where it is not the number one instead: select(length > tolerance, length, 1)."""
+    if node.head is not Select:
+        return node
+    _, first, second = node.parts
+    return first.node if first.sign > 0 and second.sign > 0 and second.node.head == 1 else node
 
 
 def is_condition(node: Node) -> bool:
+    """Whether a value is true or false."""
     return isinstance(node.head, type) and issubclass(node.head, Boolean)
 
 

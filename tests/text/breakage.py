@@ -29,9 +29,10 @@ def texts(change: Break | None = None, mechanism: Mechanism = MECHANISM) -> Mapp
     if change is not None:
         (file,) = [file for file, text in found.items() if change.where in text and f"{change.where}\n" in declared(text)]
         start = found[file].index(change.where)
-        head, rest = found[file][:start], found[file][start:]
-        assert change.right in rest, change
-        found[file] = head + rest.replace(change.right, change.wrong, 1)
+        end = found[file].index(f"END_{change.where.split()[0]}", start)
+        head, own, rest = found[file][:start], found[file][start:end], found[file][end:]
+        assert change.right in own, change
+        found[file] = head + own.replace(change.right, change.wrong, 1) + rest
     return found
 
 

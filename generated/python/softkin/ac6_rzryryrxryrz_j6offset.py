@@ -546,14 +546,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else:
                 length_q1_tried = 1.0
                 slope_length_q1_tried = 0.0
-            one_by_length_q1_tried = 1.0/length_q1_tried
-            cos_q1_tried = along_q1_tried*one_by_length_q1_tried
+            one_by_distance_q1_tried = 1.0/length_q1_tried
+            cos_q1_tried = along_q1_tried*one_by_distance_q1_tried
             across_q1_tried = wanted_shoulder*wrist_y_tried
-            sin_q1_tried = across_q1_tried*one_by_length_q1_tried
+            sin_q1_tried = across_q1_tried*one_by_distance_q1_tried
             slope_along_q1_tried = wanted_shoulder*slope_wrist_x_tried
-            slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)*one_by_length_q1_tried
+            slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)*one_by_distance_q1_tried
             slope_across_q1_tried = wanted_shoulder*slope_wrist_y_tried
-            slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)*one_by_length_q1_tried
+            slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)*one_by_distance_q1_tried
         else:
             chosen_q1 = freed_angle if freed == 0 else free_a1  # q1, where it is free
             cos_q1_tried = cos(chosen_q1)
@@ -600,17 +600,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         else:
             sum_q3_tried = 1.0
             slope_sum_q3_tried = 0.0
-        one_by_sum_q3_tried = 1.0/sum_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_q3_tried
+        one_by_both_q3_tried = 1.0/sum_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_both_q3_tried
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
         root_of_sin_swing_q3_tried = (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
-        sin_swing_q3_tried = 2.0*one_by_sum_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
+        sin_swing_q3_tried = 2.0*one_by_both_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
             (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried - slope_sum_q3_tried*cos_swing_q3_tried)
-            *one_by_sum_q3_tried
+            *one_by_both_q3_tried
         )
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
@@ -622,7 +622,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
         slope_sin_swing_q3_tried = (
             (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_sum_q3_tried*sin_swing_q3_tried)
-            *one_by_sum_q3_tried
+            *one_by_both_q3_tried
         )
         slope_cos_q3_tried = (
             a3_by_effective_q3_tried*slope_cos_swing_q3_tried + d4_by_effective_q3_tried*slope_sin_swing_q3_tried
@@ -662,11 +662,15 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else:
                 length_q2_tried = 1.0
                 slope_length_q2_tried = 0.0
-            one_by_length_q2_tried = 1.0/length_q2_tried
-            cos_q2_tried = along_q2_tried*one_by_length_q2_tried
-            sin_q2_tried = across_q2_tried*one_by_length_q2_tried
-            slope_cos_q2_tried = (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)*one_by_length_q2_tried
-            slope_sin_q2_tried = (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)*one_by_length_q2_tried
+            one_by_root_of_length_q2_tried = 1.0/length_q2_tried
+            cos_q2_tried = along_q2_tried*one_by_root_of_length_q2_tried
+            sin_q2_tried = across_q2_tried*one_by_root_of_length_q2_tried
+            slope_cos_q2_tried = (
+                (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)*one_by_root_of_length_q2_tried
+            )
+            slope_sin_q2_tried = (
+                (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)*one_by_root_of_length_q2_tried
+            )
         else:
             chosen_q2 = freed_angle if freed == 1 else free_a2  # q2, where it is free
             cos_q2_tried = cos(chosen_q2)

@@ -737,11 +737,11 @@ class Ac6ThreeParallel(Mechanism):
             across_q6_rate_q1_for_q3 = sigma_wrist*r22_from_q1_rate_q1_for_q3
             if radius_q6_before_q1_for_q3 > 1e-11:
                 along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
-                one_by_length_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
-                part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_length_q6_before_q1_for_q3
+                one_by_radius_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
+                part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
                 cos_q6_before_q1_for_q3 = -part_of_cos_q6_before_q1_for_q3
                 across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
-                part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_length_q6_before_q1_for_q3
+                part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
                 sin_q6_before_q1_for_q3 = part_of_sin_q6_before_q1_for_q3
                 radius_q6_rate_q1_for_q3 = (
                     -(
@@ -752,11 +752,11 @@ class Ac6ThreeParallel(Mechanism):
                 )
                 cos_q6_rate_q1_for_q3 = (
                     (along_q6_rate_q1_for_q3 + part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
-                    *one_by_length_q6_before_q1_for_q3
+                    *one_by_radius_q6_before_q1_for_q3
                 )
                 sin_q6_rate_q1_for_q3 = (
                     (across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
-                    *one_by_length_q6_before_q1_for_q3
+                    *one_by_radius_q6_before_q1_for_q3
                 )
             else:
                 cos_q6_before_q1_for_q3 = cos_of_free_a6

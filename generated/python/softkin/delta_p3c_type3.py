@@ -693,17 +693,17 @@ class DeltaP3CType3(OffsetKinematics):
         share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
         # how far centre 3 draws the foot
         share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -711,7 +711,7 @@ class DeltaP3CType3(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + pivot_1_y + normal_y*rise
         z = foot_z + pivot_1_z + normal_z*rise
@@ -795,17 +795,17 @@ class DeltaP3CType3(OffsetKinematics):
         share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
         # how far centre 3 draws the foot
         share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -884,12 +884,12 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
-        divisor_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
+        effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
         # 1 - cosine, times the scale
-        one_less_cos_a1 = third_square_a1 - divisor_a1_minus_inner_arm_1*divisor_a1_minus_inner_arm_1
-        divisor_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
+        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
+        effective_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = divisor_a1_plus_inner_arm_1*divisor_a1_plus_inner_arm_1 - third_square_a1
+        one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
@@ -898,8 +898,8 @@ class DeltaP3CType3(OffsetKinematics):
                 - root(
                     outer_arm_1_squared
                     + 0.5*(
-                        abs(one_less_cos_a1) + divisor_a1_minus_inner_arm_1*divisor_a1_minus_inner_arm_1
-                        + divisor_a1_plus_inner_arm_1*divisor_a1_plus_inner_arm_1 - abs(one_plus_cos_a1)
+                        abs(one_less_cos_a1) + effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
+                        + effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - abs(one_plus_cos_a1)
                     )
                     - third_square_a1
                 )
@@ -916,12 +916,12 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
-        divisor_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
+        effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
         # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - divisor_a2_minus_inner_arm_2*divisor_a2_minus_inner_arm_2
-        divisor_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
+        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
+        effective_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = divisor_a2_plus_inner_arm_2*divisor_a2_plus_inner_arm_2 - third_square_a2
+        one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
@@ -929,8 +929,8 @@ class DeltaP3CType3(OffsetKinematics):
                 outer_arm_2
                 - root(
                     0.5*(
-                        abs(one_less_cos_a2) + divisor_a2_minus_inner_arm_2*divisor_a2_minus_inner_arm_2
-                        + divisor_a2_plus_inner_arm_2*divisor_a2_plus_inner_arm_2 - abs(one_plus_cos_a2)
+                        abs(one_less_cos_a2) + effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
+                        + effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - abs(one_plus_cos_a2)
                     )
                     + outer_arm_2*outer_arm_2 - third_square_a2
                 )
@@ -947,12 +947,12 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
-        divisor_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
+        effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
         # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - divisor_a3_minus_inner_arm_3*divisor_a3_minus_inner_arm_3
-        divisor_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
+        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
+        effective_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = divisor_a3_plus_inner_arm_3*divisor_a3_plus_inner_arm_3 - third_square_a3
+        one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
@@ -960,8 +960,8 @@ class DeltaP3CType3(OffsetKinematics):
                 outer_arm_3
                 - root(
                     0.5*(
-                        abs(one_less_cos_a3) + divisor_a3_minus_inner_arm_3*divisor_a3_minus_inner_arm_3
-                        + divisor_a3_plus_inner_arm_3*divisor_a3_plus_inner_arm_3 - abs(one_plus_cos_a3)
+                        abs(one_less_cos_a3) + effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
+                        + effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - abs(one_plus_cos_a3)
                     )
                     + outer_arm_3*outer_arm_3 - third_square_a3
                 )
@@ -1154,17 +1154,17 @@ class DeltaP3CType3(OffsetKinematics):
         share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
         # how far centre 3 draws the foot
         share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -1172,7 +1172,7 @@ class DeltaP3CType3(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         z = foot_z + pivot_1_z + normal_z*rise
         x = foot_x + pivot_1_x + normal_x*rise
         span_1_x = x - part_of_pivot_1_x  # rod 1
@@ -1303,17 +1303,17 @@ class DeltaP3CType3(OffsetKinematics):
         share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
         # how far centre 3 draws the foot
         share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -1321,7 +1321,7 @@ class DeltaP3CType3(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         part_of_slope_1_by_y = base_radius_1 + inner_arm_1*cos_a1
         slope_1_by_x = 2.0*(cos_azimuth_1_times_tcp_radius_1 + x) - part_of_slope_1_by_y*twice_cos_azimuth_1
@@ -1472,12 +1472,12 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
-        divisor_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
+        effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
         # 1 - cosine, times the scale
-        one_less_cos_a1 = third_square_a1 - divisor_a1_minus_inner_arm_1*divisor_a1_minus_inner_arm_1
-        divisor_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
+        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
+        effective_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = divisor_a1_plus_inner_arm_1*divisor_a1_plus_inner_arm_1 - third_square_a1
+        one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
@@ -1486,8 +1486,8 @@ class DeltaP3CType3(OffsetKinematics):
                 - root(
                     outer_arm_1_squared
                     + 0.5*(
-                        abs(one_less_cos_a1) + divisor_a1_minus_inner_arm_1*divisor_a1_minus_inner_arm_1
-                        + divisor_a1_plus_inner_arm_1*divisor_a1_plus_inner_arm_1 - abs(one_plus_cos_a1)
+                        abs(one_less_cos_a1) + effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
+                        + effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - abs(one_plus_cos_a1)
                     )
                     - third_square_a1
                 )
@@ -1504,12 +1504,12 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
-        divisor_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
+        effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
         # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - divisor_a2_minus_inner_arm_2*divisor_a2_minus_inner_arm_2
-        divisor_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
+        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
+        effective_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = divisor_a2_plus_inner_arm_2*divisor_a2_plus_inner_arm_2 - third_square_a2
+        one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
@@ -1517,8 +1517,8 @@ class DeltaP3CType3(OffsetKinematics):
                 outer_arm_2
                 - root(
                     0.5*(
-                        abs(one_less_cos_a2) + divisor_a2_minus_inner_arm_2*divisor_a2_minus_inner_arm_2
-                        + divisor_a2_plus_inner_arm_2*divisor_a2_plus_inner_arm_2 - abs(one_plus_cos_a2)
+                        abs(one_less_cos_a2) + effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
+                        + effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - abs(one_plus_cos_a2)
                     )
                     + outer_arm_2*outer_arm_2 - third_square_a2
                 )
@@ -1535,12 +1535,12 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
-        divisor_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
+        effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
         # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - divisor_a3_minus_inner_arm_3*divisor_a3_minus_inner_arm_3
-        divisor_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
+        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
+        effective_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = divisor_a3_plus_inner_arm_3*divisor_a3_plus_inner_arm_3 - third_square_a3
+        one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
@@ -1548,8 +1548,8 @@ class DeltaP3CType3(OffsetKinematics):
                 outer_arm_3
                 - root(
                     0.5*(
-                        abs(one_less_cos_a3) + divisor_a3_minus_inner_arm_3*divisor_a3_minus_inner_arm_3
-                        + divisor_a3_plus_inner_arm_3*divisor_a3_plus_inner_arm_3 - abs(one_plus_cos_a3)
+                        abs(one_less_cos_a3) + effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
+                        + effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - abs(one_plus_cos_a3)
                     )
                     + outer_arm_3*outer_arm_3 - third_square_a3
                 )
@@ -1696,17 +1696,17 @@ class DeltaP3CType3(OffsetKinematics):
         share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
         # how far centre 3 draws the foot
         share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -1714,7 +1714,7 @@ class DeltaP3CType3(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         flange_z = foot_z + pivot_1_z + normal_z*rise
         flange_x = foot_x + pivot_1_x + normal_x*rise
         span_1_x = flange_x - part_of_pivot_1_x  # rod 1

@@ -434,20 +434,20 @@ class KinType12XY(OffsetKinematics):
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
-            *one_by_normal_divisor
+            *one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
@@ -757,20 +757,20 @@ class KinType12XY(OffsetKinematics):
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
-            *one_by_normal_divisor
+            *one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
@@ -852,12 +852,12 @@ class KinType12XY(OffsetKinematics):
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
-            *one_by_normal_divisor
+            *one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -link_length_2_squared_times_rounding):
@@ -865,9 +865,9 @@ class KinType12XY(OffsetKinematics):
         twice_link_length_1_times_sin_a1 = twice_link_length_1*sin_a1
         twice_link_length_1_times_cos_a1 = twice_link_length_1*cos_a1
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
         twice_x = -2.0*x
         foot_y = along_centres*apart_2_y
@@ -906,14 +906,17 @@ class KinType12XY(OffsetKinematics):
             slope_1_by_a1 = twice_link_length_1*((x - pivot_upper_x)*cos_a1 + (pivot_upper_y - y)*sin_a1)
             slope_2_by_a1 = (-part_of_slope_2_by_x_2*cos_a1 - part_of_slope_2_by_y_3*sin_a1)*part_of_slope_2_by_a1
             slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_y_3*cos_a2 - part_of_slope_2_by_x_2*sin_a2)
-        one_by_determinant_divisor = 1.0/determinant
-        part = -one_by_determinant_divisor*slope_2_by_a2
+        one_by_determinant = 1.0/determinant
+        slope_2_by_a2_times_one_by_determinant = -one_by_determinant*slope_2_by_a2
         return (
             (
-                (slope_1_by_y*slope_2_by_a1 - slope_1_by_a1*slope_2_by_y)*one_by_determinant_divisor,
-                -part*slope_1_by_y,
+                (slope_1_by_y*slope_2_by_a1 - slope_1_by_a1*slope_2_by_y)*one_by_determinant,
+                -slope_1_by_y*slope_2_by_a2_times_one_by_determinant,
             ),
-            (one_by_determinant_divisor*(slope_1_by_a1*slope_2_by_x - slope_1_by_x*slope_2_by_a1), part*slope_1_by_x),
+            (
+                one_by_determinant*(slope_1_by_a1*slope_2_by_x - slope_1_by_x*slope_2_by_a1),
+                slope_1_by_x*slope_2_by_a2_times_one_by_determinant,
+            ),
         )
 
     def _image(self) -> Image | Status:
@@ -1123,20 +1126,20 @@ class KinType12XY(OffsetKinematics):
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
-            *one_by_normal_divisor
+            *one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         flange_x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         flange_y = centre_1_y + foot_y + apart_2_x*rise

@@ -672,12 +672,12 @@ class P2CType1(OffsetKinematics):
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
         slope_1_by_a1 = twice_inner_arm*((y - pivot_1_y)*cos_a1 + (pivot_1_x - x)*sin_a1)
-        slope_1_by_a1_by_determinant_divisor = slope_1_by_a1/determinant
+        slope_1_by_a1_by_determinant = slope_1_by_a1/determinant
         slope_2_by_a2 = twice_inner_arm*((y - pivot_2_y)*cos_a2 - (pivot_2_x - x)*sin_a2)
-        slope_2_by_a2_by_determinant_divisor = slope_2_by_a2/determinant
+        slope_2_by_a2_by_determinant = slope_2_by_a2/determinant
         return (
-            (-slope_1_by_a1_by_determinant_divisor*slope_2_by_y, slope_1_by_y*slope_2_by_a2_by_determinant_divisor),
-            (slope_1_by_a1_by_determinant_divisor*slope_2_by_x, -slope_1_by_x*slope_2_by_a2_by_determinant_divisor),
+            (-slope_1_by_a1_by_determinant*slope_2_by_y, slope_1_by_y*slope_2_by_a2_by_determinant),
+            (slope_1_by_a1_by_determinant*slope_2_by_x, -slope_1_by_x*slope_2_by_a2_by_determinant),
         )
 
     def _image(self) -> Image | Status:

@@ -349,20 +349,20 @@ class P2XType1(OffsetKinematics):
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
             0.25*(between_centres - arm_length_1_plus_arm_length_2)
             *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_divisor
+            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = foot_y + rail_y_1 + apart_2_x*rise
@@ -529,20 +529,20 @@ class P2XType1(OffsetKinematics):
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
             0.25*(between_centres - arm_length_1_plus_arm_length_2)
             *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_divisor
+            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
         span_1_x = x - tcp_offset_1  # rod 1
         margin_upright_1 = (span_1_x - a1)/arm_length_1
@@ -589,19 +589,19 @@ class P2XType1(OffsetKinematics):
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
             0.25*(between_centres - arm_length_1_plus_arm_length_2)
             *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_divisor
+            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
         foot_y = along_centres*apart_2_y
         y = foot_y + rail_y_1 + apart_2_x*rise
         slope_1_by_y = 2.0*(y - rail_y_1)
@@ -726,20 +726,20 @@ class P2XType1(OffsetKinematics):
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         # the square of the height over the centres
         height_square = (
             0.25*(between_centres - arm_length_1_plus_arm_length_2)
             *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_divisor
+            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_divisor
+        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         flange_x = foot_x + pivot_1_x - apart_2_y*rise
         span_1_x = flange_x - tcp_offset_1  # rod 1
         branch_carriage_1 = (span_1_x - a1)/arm_length_1

@@ -904,17 +904,18 @@ class PosRRR(OffsetKinematics):
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
-        a2_plus_divisor_q3 = a2 + effective_q3
-        one_less_cos_q3 = (a2_plus_divisor_q3 + reach)*(a2_plus_divisor_q3 - reach)  # 1 - cosine, times the scale
-        a2_minus_divisor_q3 = a2 - effective_q3
-        one_plus_cos_q3 = (reach - a2_minus_divisor_q3)*(a2_minus_divisor_q3 + reach)  # 1 + cosine, times the scale
+        a2_plus_effective_q3 = a2 + effective_q3
+        one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)  # 1 - cosine, times the scale
+        a2_minus_effective_q3 = a2 - effective_q3
+        # 1 + cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
             missing = (
                 0.5*(
-                    abs(a2_minus_divisor_q3 - reach) + abs(a2_minus_divisor_q3 + reach) + abs(a2_plus_divisor_q3 - reach)
-                    + abs(a2_plus_divisor_q3 + reach)
+                    abs(a2_minus_effective_q3 - reach) + abs(a2_minus_effective_q3 + reach)
+                    + abs(a2_plus_effective_q3 - reach) + abs(a2_plus_effective_q3 + reach)
                 )
                 - a2 - effective_q3 - reach
             )

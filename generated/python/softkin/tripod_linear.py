@@ -460,17 +460,17 @@ class TripodLinear(OffsetKinematics):
         share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
         share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -478,7 +478,7 @@ class TripodLinear(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + normal_y*rise
         z = foot_z + pivot_1_z + normal_z*rise
@@ -546,17 +546,17 @@ class TripodLinear(OffsetKinematics):
         share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
         share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -834,17 +834,17 @@ class TripodLinear(OffsetKinematics):
         share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
         share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -852,7 +852,7 @@ class TripodLinear(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         z = foot_z + pivot_1_z + normal_z*rise
         x = foot_x + pivot_1_x + normal_x*rise
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
@@ -939,17 +939,17 @@ class TripodLinear(OffsetKinematics):
         share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
         share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -957,7 +957,7 @@ class TripodLinear(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         twice_x = -2.0*x
         slope_1_by_x = a1*twice_sin_rail_angle - part_of_slope_1_by_x - twice_x
@@ -1273,17 +1273,17 @@ class TripodLinear(OffsetKinematics):
         share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
         share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -1291,7 +1291,7 @@ class TripodLinear(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         flange_z = foot_z + pivot_1_z + normal_z*rise
         flange_x = foot_x + pivot_1_x + normal_x*rise
         span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1

@@ -543,23 +543,23 @@ class TripodP3Z(OffsetKinematics):
             return Status.IMPOSSIBLE
         share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
         share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
                 + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
             )
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
                 + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
             )
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -567,7 +567,7 @@ class TripodP3Z(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + pivot_1_y + normal_y*rise
         z = a1 + foot_z + normal_z*rise
@@ -617,23 +617,23 @@ class TripodP3Z(OffsetKinematics):
             return Status.IMPOSSIBLE
         share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
         share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
                 + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
             )
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
                 + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
             )
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -807,23 +807,23 @@ class TripodP3Z(OffsetKinematics):
             return Status.IMPOSSIBLE
         share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
         share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
                 + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
             )
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
                 + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
             )
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -831,7 +831,7 @@ class TripodP3Z(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         z = a1 + foot_z + normal_z*rise
         rod_1_z = z - a1
         margin_level_1 = -one_by_arm_length*rod_1_z
@@ -904,23 +904,23 @@ class TripodP3Z(OffsetKinematics):
             return Status.IMPOSSIBLE
         share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
         share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
                 + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
             )
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
                 + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
             )
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -928,7 +928,7 @@ class TripodP3Z(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         slope_1_by_x = 2.0*(x - part_of_slope_1_by_x)
         y = foot_y + pivot_1_y + normal_y*rise
@@ -951,25 +951,25 @@ class TripodP3Z(OffsetKinematics):
         # nothing controls the plate
         if not (abs(determinant) > part_of_determinant_divisor):
             return Status.IMPOSSIBLE
-        one_by_determinant_divisor = 1.0/determinant
-        part = -one_by_determinant_divisor*slope_1_by_z
-        part_2 = -one_by_determinant_divisor*slope_2_by_z
-        part_3 = -one_by_determinant_divisor*slope_3_by_z
+        one_by_determinant = 1.0/determinant
+        slope_1_by_z_times_one_by_determinant = -one_by_determinant*slope_1_by_z
+        slope_2_by_z_times_one_by_determinant = -one_by_determinant*slope_2_by_z
+        slope_3_by_z_times_one_by_determinant = -one_by_determinant*slope_3_by_z
         return (
             (
-                part*part_of_determinant,
-                part_2*(slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y),
-                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
+                part_of_determinant*slope_1_by_z_times_one_by_determinant,
+                (slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y)*slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*slope_3_by_z_times_one_by_determinant,
             ),
             (
-                part*part_of_determinant_2,
-                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*part_2,
-                part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
+                part_of_determinant_2*slope_1_by_z_times_one_by_determinant,
+                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x)*slope_3_by_z_times_one_by_determinant,
             ),
             (
-                -part*part_of_determinant_3,
-                part_2*(slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x),
-                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
+                -part_of_determinant_3*slope_1_by_z_times_one_by_determinant,
+                (slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x)*slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*slope_3_by_z_times_one_by_determinant,
             ),
         )
 
@@ -1108,23 +1108,23 @@ class TripodP3Z(OffsetKinematics):
             return Status.IMPOSSIBLE
         share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
         share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
                 + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
             )
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
                 + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
             )
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -1132,7 +1132,7 @@ class TripodP3Z(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         flange_z = a1 + foot_z + normal_z*rise
         branch_carriage_1 = (a1 - flange_z)*one_by_arm_length
         branch_carriage_2 = (a2 - flange_z)*one_by_arm_length

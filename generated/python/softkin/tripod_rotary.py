@@ -491,17 +491,17 @@ class TripodRotary(OffsetKinematics):
         share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
         share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -509,7 +509,7 @@ class TripodRotary(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + normal_y*rise
         z = foot_z + pivot_1_z + normal_z*rise
@@ -580,17 +580,17 @@ class TripodRotary(OffsetKinematics):
         share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
         share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -968,17 +968,17 @@ class TripodRotary(OffsetKinematics):
         share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
         share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -986,7 +986,7 @@ class TripodRotary(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
         z = foot_z + pivot_1_z + normal_z*rise
@@ -1078,17 +1078,17 @@ class TripodRotary(OffsetKinematics):
         share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
         share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -1096,7 +1096,7 @@ class TripodRotary(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         twice_x = -2.0*x
         slope_1_by_x = twice_arm_length_1*cos_a1 - part_of_slope_1_by_x - twice_x
@@ -1510,17 +1510,17 @@ class TripodRotary(OffsetKinematics):
         share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
         # how far centre 3 draws the foot
         share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_divisor = 1.0/normal_square
+        one_by_normal_square = 1.0/normal_square
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
@@ -1528,7 +1528,7 @@ class TripodRotary(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         flange_x = foot_x + pivot_1_x + normal_x*rise
         span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1
         flange_z = foot_z + pivot_1_z + normal_z*rise

@@ -109,14 +109,14 @@ class ArrayPrograms(Programs):
             elsewhere_length_q1_tried,
             (),
         )
-        one_by_length_q1_tried = 1.0/length_q1_tried
-        cos_q1_tried = along_q1_tried*one_by_length_q1_tried  # its reference where it is free
+        one_by_distance_q1_tried = 1.0/length_q1_tried
+        cos_q1_tried = along_q1_tried*one_by_distance_q1_tried  # its reference where it is free
         across_q1_tried = wanted_shoulder*wrist_y_tried
-        sin_q1_tried = across_q1_tried*one_by_length_q1_tried
+        sin_q1_tried = across_q1_tried*one_by_distance_q1_tried
         slope_along_q1_tried = wanted_shoulder*slope_wrist_x_tried
-        slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)*one_by_length_q1_tried
+        slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)*one_by_distance_q1_tried
         slope_across_q1_tried = wanted_shoulder*slope_wrist_y_tried
-        slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)*one_by_length_q1_tried
+        slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)*one_by_distance_q1_tried
         cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried = elsewhere(
             (distance_q1_tried > machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
@@ -172,17 +172,17 @@ class ArrayPrograms(Programs):
             elsewhere_sum_q3_tried,
             (),
         )
-        one_by_sum_q3_tried = 1.0/sum_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_q3_tried
+        one_by_both_q3_tried = 1.0/sum_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_both_q3_tried
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
-        sin_swing_q3_tried = 2.0*one_by_sum_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
+        sin_swing_q3_tried = 2.0*one_by_both_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
             (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried - slope_sum_q3_tried*cos_swing_q3_tried)
-            *one_by_sum_q3_tried
+            *one_by_both_q3_tried
         )
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
@@ -197,7 +197,7 @@ class ArrayPrograms(Programs):
         )
         slope_sin_swing_q3_tried = (
             (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_sum_q3_tried*sin_swing_q3_tried)
-            *one_by_sum_q3_tried
+            *one_by_both_q3_tried
         )
         slope_cos_q3_tried = (
             a3_by_effective_q3_tried*slope_cos_swing_q3_tried + d4_by_effective_q3_tried*slope_sin_swing_q3_tried
@@ -253,11 +253,15 @@ class ArrayPrograms(Programs):
             elsewhere_length_q2_tried,
             (),
         )
-        one_by_length_q2_tried = 1.0/length_q2_tried
-        cos_q2_tried = along_q2_tried*one_by_length_q2_tried  # its reference where it is free
-        sin_q2_tried = across_q2_tried*one_by_length_q2_tried
-        slope_cos_q2_tried = (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)*one_by_length_q2_tried
-        slope_sin_q2_tried = (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)*one_by_length_q2_tried
+        one_by_root_of_length_q2_tried = 1.0/length_q2_tried
+        cos_q2_tried = along_q2_tried*one_by_root_of_length_q2_tried  # its reference where it is free
+        sin_q2_tried = across_q2_tried*one_by_root_of_length_q2_tried
+        slope_cos_q2_tried = (
+            (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)*one_by_root_of_length_q2_tried
+        )
+        slope_sin_q2_tried = (
+            (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)*one_by_root_of_length_q2_tried
+        )
         cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
             (reach_tried > machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),

@@ -289,11 +289,11 @@ class ArrayPrograms(Programs):
                 )
 
             along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
-            one_by_length_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
-            part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_length_q6_before_q1_for_q3
+            one_by_radius_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
+            part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
             cos_q6_before_q1_for_q3 = -part_of_cos_q6_before_q1_for_q3
             across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
-            part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_length_q6_before_q1_for_q3
+            part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
             sin_q6_before_q1_for_q3 = part_of_sin_q6_before_q1_for_q3
             radius_q6_rate_q1_for_q3 = (
                 -(
@@ -304,11 +304,11 @@ class ArrayPrograms(Programs):
             )
             cos_q6_rate_q1_for_q3 = (
                 (along_q6_rate_q1_for_q3 + part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
-                *one_by_length_q6_before_q1_for_q3
+                *one_by_radius_q6_before_q1_for_q3
             )
             sin_q6_rate_q1_for_q3 = (
                 (across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
-                *one_by_length_q6_before_q1_for_q3
+                *one_by_radius_q6_before_q1_for_q3
             )
             found = elsewhere(
                 radius_q6_before_q1_for_q3 > 1e-11,
@@ -1025,13 +1025,13 @@ class ArrayPrograms(Programs):
                     sin_q6_before_q1_for_q3_left_up, cos_q6_rate_q1_for_q3_left_up, sin_q6_rate_q1_for_q3_left_up,
                 )
 
-            one_by_length_q6_before_q1_for_q3_left = 1.0/radius_q6_before_q1_for_q3_left
+            one_by_radius_q6_before_q1_for_q3_left = 1.0/radius_q6_before_q1_for_q3_left
             part_of_cos_q6_before_q1_for_q3_left_down = (
-                one_by_length_q6_before_q1_for_q3_left*r21_from_q1_before_q1_for_q3_left
+                one_by_radius_q6_before_q1_for_q3_left*r21_from_q1_before_q1_for_q3_left
             )
             cos_q6_before_q1_for_q3_left_down = -part_of_cos_q6_before_q1_for_q3_left_down
             part_of_sin_q6_before_q1_for_q3_left_down = (
-                one_by_length_q6_before_q1_for_q3_left*r22_from_q1_before_q1_for_q3_left
+                one_by_radius_q6_before_q1_for_q3_left*r22_from_q1_before_q1_for_q3_left
             )
             sin_q6_before_q1_for_q3_left_down = part_of_sin_q6_before_q1_for_q3_left_down
             radius_q6_rate_q1_for_q3_left = (
@@ -1042,7 +1042,7 @@ class ArrayPrograms(Programs):
                 /radius_q6_before_q1_for_q3_left
             )
             cos_q6_rate_q1_for_q3_left_down = (
-                one_by_length_q6_before_q1_for_q3_left
+                one_by_radius_q6_before_q1_for_q3_left
                 *(
                     part_of_cos_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
                     - r21_from_q1_rate_q1_for_q3_left
@@ -1053,7 +1053,7 @@ class ArrayPrograms(Programs):
                     r22_from_q1_rate_q1_for_q3_left
                     - part_of_sin_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
                 )
-                *one_by_length_q6_before_q1_for_q3_left
+                *one_by_radius_q6_before_q1_for_q3_left
             )
             cos_q6_before_q1_for_q3_left_up = -cos_q6_before_q1_for_q3_left_down
             sin_q6_before_q1_for_q3_left_up = -part_of_sin_q6_before_q1_for_q3_left_down
@@ -1062,10 +1062,10 @@ class ArrayPrograms(Programs):
                     r21_from_q1_rate_q1_for_q3_left
                     - part_of_cos_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
                 )
-                *one_by_length_q6_before_q1_for_q3_left
+                *one_by_radius_q6_before_q1_for_q3_left
             )
             sin_q6_rate_q1_for_q3_left_up = (
-                one_by_length_q6_before_q1_for_q3_left
+                one_by_radius_q6_before_q1_for_q3_left
                 *(
                     part_of_sin_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
                     - r22_from_q1_rate_q1_for_q3_left
@@ -1412,15 +1412,15 @@ class ArrayPrograms(Programs):
             length_q6_before_q1_for_q3_right = select(
                 radius_q6_before_q1_for_q3_right > 1e-11, radius_q6_before_q1_for_q3_right, 1.0,
             )
-            one_by_length_q6_before_q1_for_q3_right = 1.0/length_q6_before_q1_for_q3_right
+            one_by_radius_q6_before_q1_for_q3_right = 1.0/length_q6_before_q1_for_q3_right
             part_of_cos_q6_before_q1_for_q3_right_down = (
-                one_by_length_q6_before_q1_for_q3_right*r21_from_q1_before_q1_for_q3_right
+                one_by_radius_q6_before_q1_for_q3_right*r21_from_q1_before_q1_for_q3_right
             )
             cos_q6_before_q1_for_q3_right_down = select(
                 radius_q6_before_q1_for_q3_right > 1e-11, -part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6,
             )
             part_of_sin_q6_before_q1_for_q3_right_down = (
-                one_by_length_q6_before_q1_for_q3_right*r22_from_q1_before_q1_for_q3_right
+                one_by_radius_q6_before_q1_for_q3_right*r22_from_q1_before_q1_for_q3_right
             )
             sin_q6_before_q1_for_q3_right_down = select(
                 radius_q6_before_q1_for_q3_right > 1e-11, part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6,
@@ -2305,7 +2305,7 @@ class ArrayPrograms(Programs):
                 )
 
             cos_q6_rate_q1_for_q3_right_down = (
-                one_by_length_q6_before_q1_for_q3_right
+                one_by_radius_q6_before_q1_for_q3_right
                 *(
                     part_of_cos_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
                     - r21_from_q1_rate_q1_for_q3_right
@@ -2316,17 +2316,17 @@ class ArrayPrograms(Programs):
                     r22_from_q1_rate_q1_for_q3_right
                     - part_of_sin_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
                 )
-                *one_by_length_q6_before_q1_for_q3_right
+                *one_by_radius_q6_before_q1_for_q3_right
             )
             cos_q6_rate_q1_for_q3_right_up = (
                 (
                     r21_from_q1_rate_q1_for_q3_right
                     - part_of_cos_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
                 )
-                *one_by_length_q6_before_q1_for_q3_right
+                *one_by_radius_q6_before_q1_for_q3_right
             )
             sin_q6_rate_q1_for_q3_right_up = (
-                one_by_length_q6_before_q1_for_q3_right
+                one_by_radius_q6_before_q1_for_q3_right
                 *(
                     part_of_sin_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
                     - r22_from_q1_rate_q1_for_q3_right

@@ -210,55 +210,55 @@ class ArrayPrograms(StartedPrograms):
             )
             # leg 1: its direction, and the moment of that about the platform's origin
             divisor_1 = select(length_1 > machine_scale_times_shortest_link, length_1, 1.0)
-            one_by_divisor_1 = 1.0/divisor_1
-            along_1_x = one_by_divisor_1*span_1_x
-            along_1_y = one_by_divisor_1*span_1_y
-            along_1_z = one_by_divisor_1*span_1_z
+            one_by_length_1 = 1.0/divisor_1
+            along_1_x = one_by_length_1*span_1_x
+            along_1_y = one_by_length_1*span_1_y
+            along_1_z = one_by_length_1*span_1_z
             moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*one_by_platform_radius
             moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*one_by_platform_radius
             moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*one_by_platform_radius
             # leg 2: its direction, and the moment of that about the platform's origin
             divisor_2 = select(length_2 > machine_scale_times_shortest_link, length_2, 1.0)
-            one_by_divisor_2 = 1.0/divisor_2
-            along_2_x = one_by_divisor_2*span_2_x
-            along_2_y = one_by_divisor_2*span_2_y
-            along_2_z = one_by_divisor_2*span_2_z
+            one_by_length_2 = 1.0/divisor_2
+            along_2_x = one_by_length_2*span_2_x
+            along_2_y = one_by_length_2*span_2_y
+            along_2_z = one_by_length_2*span_2_z
             moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*one_by_platform_radius
             moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*one_by_platform_radius
             moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*one_by_platform_radius
             # leg 3: its direction, and the moment of that about the platform's origin
             divisor_3 = select(length_3 > machine_scale_times_shortest_link, length_3, 1.0)
-            one_by_divisor_3 = 1.0/divisor_3
-            along_3_x = one_by_divisor_3*span_3_x
-            along_3_y = one_by_divisor_3*span_3_y
-            along_3_z = one_by_divisor_3*span_3_z
+            one_by_length_3 = 1.0/divisor_3
+            along_3_x = one_by_length_3*span_3_x
+            along_3_y = one_by_length_3*span_3_y
+            along_3_z = one_by_length_3*span_3_z
             moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*one_by_platform_radius
             moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*one_by_platform_radius
             moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*one_by_platform_radius
             # leg 4: its direction, and the moment of that about the platform's origin
             divisor_4 = select(length_4 > machine_scale_times_shortest_link, length_4, 1.0)
-            one_by_divisor_4 = 1.0/divisor_4
-            along_4_x = one_by_divisor_4*span_4_x
-            along_4_y = one_by_divisor_4*span_4_y
-            along_4_z = one_by_divisor_4*span_4_z
+            one_by_length_4 = 1.0/divisor_4
+            along_4_x = one_by_length_4*span_4_x
+            along_4_y = one_by_length_4*span_4_y
+            along_4_z = one_by_length_4*span_4_z
             moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*one_by_platform_radius
             moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*one_by_platform_radius
             moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*one_by_platform_radius
             # leg 5: its direction, and the moment of that about the platform's origin
             divisor_5 = select(length_5 > machine_scale_times_shortest_link, length_5, 1.0)
-            one_by_divisor_5 = 1.0/divisor_5
-            along_5_x = one_by_divisor_5*span_5_x
-            along_5_y = one_by_divisor_5*span_5_y
-            along_5_z = one_by_divisor_5*span_5_z
+            one_by_length_5 = 1.0/divisor_5
+            along_5_x = one_by_length_5*span_5_x
+            along_5_y = one_by_length_5*span_5_y
+            along_5_z = one_by_length_5*span_5_z
             moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*one_by_platform_radius
             moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*one_by_platform_radius
             moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*one_by_platform_radius
             # leg 6: its direction, and the moment of that about the platform's origin
             divisor_6 = select(length_6 > machine_scale_times_shortest_link, length_6, 1.0)
-            one_by_divisor_6 = 1.0/divisor_6
-            along_6_x = one_by_divisor_6*span_6_x
-            along_6_y = one_by_divisor_6*span_6_y
-            along_6_z = one_by_divisor_6*span_6_z
+            one_by_length_6 = 1.0/divisor_6
+            along_6_x = one_by_length_6*span_6_x
+            along_6_y = one_by_length_6*span_6_y
+            along_6_z = one_by_length_6*span_6_z
             moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*one_by_platform_radius
             moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*one_by_platform_radius
             moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*one_by_platform_radius
@@ -543,55 +543,55 @@ class ArrayPrograms(StartedPrograms):
         require(status, l6 > machine_scale_times_shortest_link, Status.UNREACHABLE)
         # leg 1: its direction, and the moment of that about the platform's origin
         divisor_1 = select(l1 > machine_scale_times_shortest_link, l1, 1.0)
-        one_by_divisor_1 = 1.0/divisor_1
-        along_1_x = one_by_divisor_1*span_1_x
-        along_1_y = one_by_divisor_1*span_1_y
-        along_1_z = one_by_divisor_1*span_1_z
+        one_by_l1 = 1.0/divisor_1
+        along_1_x = one_by_l1*span_1_x
+        along_1_y = one_by_l1*span_1_y
+        along_1_z = one_by_l1*span_1_z
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
         # leg 1: its joint on the base bends beyond its cone
         require(status, cos_base_lean_1 >= least_cos_base, Status.UNREACHABLE)
         # leg 2: its direction, and the moment of that about the platform's origin
         divisor_2 = select(l2 > machine_scale_times_shortest_link, l2, 1.0)
-        one_by_divisor_2 = 1.0/divisor_2
-        along_2_x = one_by_divisor_2*span_2_x
-        along_2_y = one_by_divisor_2*span_2_y
-        along_2_z = one_by_divisor_2*span_2_z
+        one_by_l2 = 1.0/divisor_2
+        along_2_x = one_by_l2*span_2_x
+        along_2_y = one_by_l2*span_2_y
+        along_2_z = one_by_l2*span_2_z
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
         # leg 2: its joint on the base bends beyond its cone
         require(status, cos_base_lean_2 >= least_cos_base, Status.UNREACHABLE)
         # leg 3: its direction, and the moment of that about the platform's origin
         divisor_3 = select(l3 > machine_scale_times_shortest_link, l3, 1.0)
-        one_by_divisor_3 = 1.0/divisor_3
-        along_3_x = one_by_divisor_3*span_3_x
-        along_3_y = one_by_divisor_3*span_3_y
-        along_3_z = one_by_divisor_3*span_3_z
+        one_by_l3 = 1.0/divisor_3
+        along_3_x = one_by_l3*span_3_x
+        along_3_y = one_by_l3*span_3_y
+        along_3_z = one_by_l3*span_3_z
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
         # leg 3: its joint on the base bends beyond its cone
         require(status, cos_base_lean_3 >= least_cos_base, Status.UNREACHABLE)
         # leg 4: its direction, and the moment of that about the platform's origin
         divisor_4 = select(l4 > machine_scale_times_shortest_link, l4, 1.0)
-        one_by_divisor_4 = 1.0/divisor_4
-        along_4_x = one_by_divisor_4*span_4_x
-        along_4_y = one_by_divisor_4*span_4_y
-        along_4_z = one_by_divisor_4*span_4_z
+        one_by_l4 = 1.0/divisor_4
+        along_4_x = one_by_l4*span_4_x
+        along_4_y = one_by_l4*span_4_y
+        along_4_z = one_by_l4*span_4_z
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
         # leg 4: its joint on the base bends beyond its cone
         require(status, cos_base_lean_4 >= least_cos_base, Status.UNREACHABLE)
         # leg 5: its direction, and the moment of that about the platform's origin
         divisor_5 = select(l5 > machine_scale_times_shortest_link, l5, 1.0)
-        one_by_divisor_5 = 1.0/divisor_5
-        along_5_x = one_by_divisor_5*span_5_x
-        along_5_y = one_by_divisor_5*span_5_y
-        along_5_z = one_by_divisor_5*span_5_z
+        one_by_l5 = 1.0/divisor_5
+        along_5_x = one_by_l5*span_5_x
+        along_5_y = one_by_l5*span_5_y
+        along_5_z = one_by_l5*span_5_z
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
         # leg 5: its joint on the base bends beyond its cone
         require(status, cos_base_lean_5 >= least_cos_base, Status.UNREACHABLE)
         # leg 6: its direction, and the moment of that about the platform's origin
         divisor_6 = select(l6 > machine_scale_times_shortest_link, l6, 1.0)
-        one_by_divisor_6 = 1.0/divisor_6
-        along_6_x = one_by_divisor_6*span_6_x
-        along_6_y = one_by_divisor_6*span_6_y
-        along_6_z = one_by_divisor_6*span_6_z
+        one_by_l6 = 1.0/divisor_6
+        along_6_x = one_by_l6*span_6_x
+        along_6_y = one_by_l6*span_6_y
+        along_6_z = one_by_l6*span_6_z
         cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
         # leg 6: its joint on the base bends beyond its cone
         require(status, cos_base_lean_6 >= least_cos_base, Status.UNREACHABLE)

@@ -99,19 +99,19 @@ class ArrayPrograms(Programs):
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)
-        one_by_normal_divisor = 1.0/normal_divisor
+        one_by_normal_square = 1.0/normal_divisor
         # the square of the height over the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
-            *one_by_normal_divisor
+            *one_by_normal_square
         )
         # the rods do not meet
         require(status, height_square >= -link_length_2_squared_times_rounding, Status.IMPOSSIBLE)
         # foot of the height, as a share
-        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_divisor
+        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise

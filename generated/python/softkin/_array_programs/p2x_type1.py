@@ -66,19 +66,19 @@ class ArrayPrograms(Programs):
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)
-        one_by_normal_divisor = 1.0/normal_divisor
+        one_by_normal_square = 1.0/normal_divisor
         # the square of the height over the centres
         height_square = (
             0.25*(between_centres - arm_length_1_plus_arm_length_2)
             *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_divisor
+            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
         )
         # the rods do not meet
         require(status, height_square >= -arm_length_1_squared_times_rounding, Status.IMPOSSIBLE)
         # foot of the height, as a share
-        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_divisor
+        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = foot_y + rail_y_1 + apart_2_x*rise

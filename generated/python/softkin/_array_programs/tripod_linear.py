@@ -89,24 +89,24 @@ class ArrayPrograms(Programs):
         # how far centre 3 draws the foot
         share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
-        one_by_normal_divisor = 1.0/normal_divisor
+        one_by_normal_square = 1.0/normal_divisor
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         require(status, height_square >= -arm_length_squared_times_rounding, Status.IMPOSSIBLE)
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + normal_y*rise
         z = foot_z + pivot_1_z + normal_z*rise

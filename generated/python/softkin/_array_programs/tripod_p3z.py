@@ -80,30 +80,30 @@ class ArrayPrograms(Programs):
         share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
         share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
-        one_by_normal_divisor = 1.0/normal_divisor
+        one_by_normal_square = 1.0/normal_divisor
         foot_x = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
                 + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
             )
         )
         foot_y = (
-            one_by_normal_divisor
+            one_by_normal_square
             *(
                 (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
                 + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
             )
         )
         foot_z = (
-            one_by_normal_divisor
+            one_by_normal_square
             *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
         )
         # the square of the height over the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         require(status, height_square >= -arm_length_squared_times_rounding, Status.IMPOSSIBLE)
-        rise = root(height_square*one_by_normal_divisor)*assembly_sign
+        rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + pivot_1_y + normal_y*rise
         z = a1 + foot_z + normal_z*rise
