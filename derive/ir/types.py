@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from enum import Enum
+from functools import cache
 
 import sympy as sp
 from sympy.core.relational import Relational
@@ -30,7 +31,7 @@ from derive.ir.primitives import (
     Wrap,
 )
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Statement
-from derive.ir.symbols import Flag, is_count
+from derive.ir.symbols import Flag, is_count, names_in
 
 
 class Type(Enum):
@@ -58,6 +59,13 @@ _NOTHING: Known = {}
 
 def type_of(value: sp.Basic, known: Known = _NOTHING) -> Type:
     """The type of an expression, through all of its parts; raises `IllTypedError`."""
+    return _type_of(value, frozenset((name, known[name]) for name in names_in(value) if name in known))
+
+
+@cache
+def _type_of(value: sp.Basic, angles: frozenset[tuple[sp.Symbol, Type]]) -> Type:
+    """The same, and the names in it that are angles: remembered, since every pass checks what it has not changed as well."""
+    known = dict(angles)
     if isinstance(value, sp.Symbol):
         return Type.BOOL if isinstance(value, Flag) else Type.INT if is_count(value) else known.get(value, Type.REAL)
     if isinstance(value, sp.Number | sp.NumberSymbol):

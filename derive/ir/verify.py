@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 
 import sympy as sp
 
@@ -22,9 +23,7 @@ from derive.ir.program import (
     expressions,
     told,
 )
-from derive.ir.symbols import (
-    symbols_of,
-)
+from derive.ir.symbols import names_in, symbols_of
 from derive.ir.typed import check_types
 from derive.ir.types import IllTypedError
 
@@ -106,15 +105,31 @@ def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:
 
 
 def _check_expression(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol]) -> None:
+    for name in names_in(value):
+        if bound.get(name.name) != name:
+            _refuse_name(program, value, bound)
+    if strange := _strange_part(value):
+        raise BrokenProgram(f"{program.name}: {strange}")
+
+
+def _refuse_name(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol]) -> None:
+    """Raise for the first name that is not bound, or bound as another type."""
     for node in sp.preorder_traversal(value):
         if isinstance(node, sp.Symbol) and node.name not in bound:
             raise BrokenProgram(f"{program.name}: {node.name!r} is read before it is bound, in {value}")
         if isinstance(node, sp.Symbol) and bound[node.name] != node:
             raise BrokenProgram(f"{program.name}: {node.name!r} is read as another type than it is bound, in {value}")
+
+
+@cache
+def _strange_part(value: sp.Basic) -> str:
+    """What of an expression no language can print, in words; nothing where all of it can be."""
+    for node in sp.preorder_traversal(value):
         if isinstance(node, sp.Pow) and not _is_power_printable(node):
-            raise BrokenProgram(f"{program.name}: power {node} is not an integer power")
+            return f"power {node} is not an integer power"
         if not isinstance(node, _ARITHMETIC + _LOGIC + PRIMITIVES) and node not in (sp.true, sp.false):
-            raise BrokenProgram(f"{program.name}: {type(node).__name__} is not a primitive, in {value}")
+            return f"{type(node).__name__} is not a primitive, in {value}"
+    return ""
 
 
 def _is_power_printable(node: sp.Pow) -> bool:
