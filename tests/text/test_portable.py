@@ -41,6 +41,11 @@ def test_every_object_is_portable(file: str) -> None:
     assert lint(FILES[file]) == []
 
 
+@pytest.mark.parametrize("file", FILES)
+def test_no_line_is_longer_than_a_page_is_wide(file: str) -> None:
+    assert [line for line in FILES[file].split("\n") if len(line) > 110] == []
+
+
 def test_the_lint_knows_enough() -> None:
     assert {"Unknown", "Rotary", "zero", "SMC_NO_ERROR"} <= set(enumerators())
     assert {"trafo", "axispos_ref", "smc_frame", "softkin_root", "ismkinperiodhandling"} <= library_names()

@@ -190,9 +190,15 @@ def _item(text: str) -> list[str]:
 
 
 def _table(head: Sequence[str], rows: Iterator[Sequence[str]]) -> list[str]:
-    """A simple table of reStructuredText."""
+    """A simple table of reStructuredText; what the last column has no room for stands on lines that begin with nothing."""
     cells = [head, *rows]
-    widths = [max(len(row[column]) for row in cells) for column in range(len(head))]
-    rule = " ".join("=" * width for width in widths)
-    lines = [" ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
+    widths = [max(len(row[column]) for row in cells) for column in range(len(head) - 1)]
+    last = _WIDTH - sum(width + 1 for width in widths)
+    lines = [
+        " ".join([cell.ljust(width) for cell, width in zip(first, widths, strict=True)] + [text]).rstrip()
+        for row in cells
+        for number, text in enumerate(wrap(row[-1], last) or [""])
+        for first in [row[:-1] if number == 0 else [""] * len(widths)]
+    ]
+    rule = " ".join("=" * width for width in [*widths, min(last, max(len(row[-1]) for row in cells))])
     return [rule, lines[0], rule, *lines[1:], rule]

@@ -167,8 +167,8 @@ class BipodRotary(OffsetKinematics):
         ),
         Parameter(
             name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least distance from a type 2 singularity, a number without a unit; 0: off", low=0.0,
-            high=1.0, low_is_open=False, default=0.001,
+            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
+            low_is_open=False, default=0.001,
         ),
         Parameter(
             name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
@@ -210,7 +210,7 @@ class BipodRotary(OffsetKinematics):
         lower_a2: A2: lower limit of the axis, both 0: no limit [deg]
         upper_a2: A2: upper limit of the axis, both 0: no limit [deg]
         tcp_above: assembly mode: above instead of below
-        min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
+        min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
         values = self._accept(
@@ -253,7 +253,7 @@ class BipodRotary(OffsetKinematics):
             raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
         if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
             raise self._refusal(
-                "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",
+                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
                 min_type2_margin=min_type2_margin,
             )
         if not (abs(displacement - tcp_displacement) < inner_arm + outer_arm):

@@ -437,13 +437,13 @@ class Hexapod(IterativeForward):
         ),
         Parameter(
             name="max_angle_base_joint", kind="angle", unit="deg",
-            meaning="Largest lean of a leg from home, as the base sees it; 180: no bound", low=0.0, high=180.0,
+            meaning="Largest lean of a leg from home, at the base; 180: no bound", low=0.0, high=180.0,
             low_is_open=False, default=180.0,
         ),
         Parameter(
             name="max_angle_platform_joint", kind="angle", unit="deg",
-            meaning="Largest lean of a leg from home, as the platform sees it; 180: no bound", low=0.0,
-            high=180.0, low_is_open=False, default=180.0,
+            meaning="Largest lean of a leg from home, at the platform; 180: no bound", low=0.0, high=180.0,
+            low_is_open=False, default=180.0,
         ),
         Parameter(
             name="offset_l1", kind="distance", unit="u", meaning="L1: axis value at the kinematic zero position",
@@ -531,8 +531,8 @@ class Hexapod(IterativeForward):
         ),
         Parameter(
             name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least distance from a type 2 singularity, a number without a unit; 0: off", low=0.0,
-            high=1.0, low_is_open=False, default=0.001,
+            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
+            low_is_open=False, default=0.001,
         ),
         Parameter(
             name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
@@ -611,8 +611,8 @@ class Hexapod(IterativeForward):
         home_roll: Roll of the home pose: Rz(yaw) Ry(pitch) Rx(roll) [deg]
         home_pitch: Pitch of the home pose: Rz(yaw) Ry(pitch) Rx(roll) [deg]
         home_yaw: Yaw of the home pose: Rz(yaw) Ry(pitch) Rx(roll) [deg]
-        max_angle_base_joint: Largest lean of a leg from home, as the base sees it; 180: no bound [deg]
-        max_angle_platform_joint: Largest lean of a leg from home, as the platform sees it; 180: no bound [deg]
+        max_angle_base_joint: Largest lean of a leg from home, at the base; 180: no bound [deg]
+        max_angle_platform_joint: Largest lean of a leg from home, at the platform; 180: no bound [deg]
         offset_l1: L1: axis value at the kinematic zero position [u]
         offset_l2: L2: axis value at the kinematic zero position [u]
         offset_l3: L3: axis value at the kinematic zero position [u]
@@ -631,7 +631,7 @@ class Hexapod(IterativeForward):
         upper_l5: L5: upper limit of the axis, both 0: joint value 0 or more [u]
         lower_l6: L6: lower limit of the axis, both 0: joint value 0 or more [u]
         upper_l6: L6: upper limit of the axis, both 0: joint value 0 or more [u]
-        min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
+        min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
         values = self._accept(
@@ -811,12 +811,12 @@ class Hexapod(IterativeForward):
             raise self._refusal("home_yaw: Yaw of the home pose: Rz(yaw) Ry(pitch) Rx(roll)", home_yaw=home_yaw)
         if not (max_angle_base_joint >= 0.0 and max_angle_base_joint <= 180.0):
             raise self._refusal(
-                "max_angle_base_joint: Largest lean of a leg from home, as the base sees it; 180: no bound",
+                "max_angle_base_joint: Largest lean of a leg from home, at the base; 180: no bound",
                 max_angle_base_joint=max_angle_base_joint,
             )
         if not (max_angle_platform_joint >= 0.0 and max_angle_platform_joint <= 180.0):
             raise self._refusal(
-                ("max_angle_platform_joint: Largest lean of a leg from home, as the platform sees it; 180: no bound"),
+                "max_angle_platform_joint: Largest lean of a leg from home, at the platform; 180: no bound",
                 max_angle_platform_joint=max_angle_platform_joint,
             )
         if not (offset_l1 >= -1e9 and offset_l1 <= 1e9):
@@ -881,7 +881,7 @@ class Hexapod(IterativeForward):
             )
         if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
             raise self._refusal(
-                "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",
+                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
                 min_type2_margin=min_type2_margin,
             )
         if not ((lower_l1 < upper_l1) or (abs(lower_l1) + abs(upper_l1) <= 0.0)):

@@ -189,8 +189,8 @@ class KinType12XY(OffsetKinematics):
         ),
         Parameter(
             name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least distance from a type 2 singularity, a number without a unit; 0: off", low=0.0,
-            high=1.0, low_is_open=False, default=0.001,
+            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
+            low_is_open=False, default=0.001,
         ),
         Parameter(
             name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
@@ -234,7 +234,7 @@ class KinType12XY(OffsetKinematics):
         lower_a2: A2: lower limit of the axis, both 0: no limit [deg]
         upper_a2: A2: upper limit of the axis, both 0: no limit [deg]
         e_right: assembly mode: right instead of left
-        min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
+        min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
         values = self._accept(
@@ -277,7 +277,7 @@ class KinType12XY(OffsetKinematics):
             raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
         if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
             raise self._refusal(
-                "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",
+                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
                 min_type2_margin=min_type2_margin,
             )
         if not (link_length_3 + link_length_4 + link_length_5 > link_length_1):

@@ -144,12 +144,12 @@ class PCC(OffsetKinematics):
         ),
         Parameter(
             name="lower_elbow", kind="angle", unit="deg",
-            meaning="lower limit of the outer arm relative to the inner arm, both 0: no limit", low=-1000000000.0,
+            meaning="lower limit of the angle between the arms, both 0: no limit", low=-1000000000.0,
             high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
             name="upper_elbow", kind="angle", unit="deg",
-            meaning="upper limit of the outer arm relative to the inner arm, both 0: no limit", low=-1000000000.0,
+            meaning="upper limit of the angle between the arms, both 0: no limit", low=-1000000000.0,
             high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
@@ -187,8 +187,8 @@ class PCC(OffsetKinematics):
         upper_a1: A1: upper limit of the axis, both 0: no limit [deg]
         lower_a2: A2: lower limit of the axis, both 0: no limit [deg]
         upper_a2: A2: upper limit of the axis, both 0: no limit [deg]
-        lower_elbow: lower limit of the outer arm relative to the inner arm, both 0: no limit [deg]
-        upper_elbow: upper limit of the outer arm relative to the inner arm, both 0: no limit [deg]
+        lower_elbow: lower limit of the angle between the arms, both 0: no limit [deg]
+        upper_elbow: upper limit of the angle between the arms, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         """
         values = self._accept(
@@ -228,13 +228,11 @@ class PCC(OffsetKinematics):
             raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
         if not (lower_elbow >= -1e9 and lower_elbow <= 1e9):
             raise self._refusal(
-                "lower_elbow: lower limit of the outer arm relative to the inner arm, both 0: no limit",
-                lower_elbow=lower_elbow,
+                "lower_elbow: lower limit of the angle between the arms, both 0: no limit", lower_elbow=lower_elbow,
             )
         if not (upper_elbow >= -1e9 and upper_elbow <= 1e9):
             raise self._refusal(
-                "upper_elbow: upper limit of the outer arm relative to the inner arm, both 0: no limit",
-                upper_elbow=upper_elbow,
+                "upper_elbow: upper limit of the angle between the arms, both 0: no limit", upper_elbow=upper_elbow,
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
@@ -439,8 +437,8 @@ class PCC(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
         a1 = DEGREE*(axis_a1 - offset_a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
-        value_elbow = (a2 - a1)/DEGREE  # the outer arm relative to the inner arm
-        # limits of the outer arm relative to the inner arm
+        value_elbow = (a2 - a1)/DEGREE  # the angle between the arms
+        # limits of the angle between the arms
         if not (value_elbow >= lowest_elbow):
             missing = lowest_elbow - value_elbow
             if turn := turn_inside(
@@ -450,9 +448,7 @@ class PCC(OffsetKinematics):
             ):
                 return Diagnosis(
                     Status.UNREACHABLE,
-                    ("the outer arm relative to the inner arm: this turn of A2 is beyond a limit, name one inside [deg]"),
-                    missing,
-                    turn,
+                    "the angle between the arms: this turn of A2 is beyond a limit, name one inside [deg]", missing, turn,
                 )
             if turn := turn_inside(
                 axis_a1,
@@ -461,13 +457,9 @@ class PCC(OffsetKinematics):
             ):
                 return Diagnosis(
                     Status.UNREACHABLE,
-                    ("the outer arm relative to the inner arm: this turn of A1 is beyond a limit, name one inside [deg]"),
-                    missing,
-                    turn,
+                    "the angle between the arms: this turn of A1 is beyond a limit, name one inside [deg]", missing, turn,
                 )
-            return Diagnosis(
-                Status.UNREACHABLE, "the outer arm relative to the inner arm: below its lower limit [deg]", missing,
-            )
+            return Diagnosis(Status.UNREACHABLE, "the angle between the arms: below its lower limit [deg]", missing)
         if not (value_elbow <= highest_elbow):
             missing = value_elbow - highest_elbow
             if turn := turn_inside(
@@ -477,9 +469,7 @@ class PCC(OffsetKinematics):
             ):
                 return Diagnosis(
                     Status.UNREACHABLE,
-                    ("the outer arm relative to the inner arm: this turn of A2 is beyond a limit, name one inside [deg]"),
-                    missing,
-                    turn,
+                    "the angle between the arms: this turn of A2 is beyond a limit, name one inside [deg]", missing, turn,
                 )
             if turn := turn_inside(
                 axis_a1,
@@ -488,13 +478,9 @@ class PCC(OffsetKinematics):
             ):
                 return Diagnosis(
                     Status.UNREACHABLE,
-                    ("the outer arm relative to the inner arm: this turn of A1 is beyond a limit, name one inside [deg]"),
-                    missing,
-                    turn,
+                    "the angle between the arms: this turn of A1 is beyond a limit, name one inside [deg]", missing, turn,
                 )
-            return Diagnosis(
-                Status.UNREACHABLE, "the outer arm relative to the inner arm: above its upper limit [deg]", missing,
-            )
+            return Diagnosis(Status.UNREACHABLE, "the angle between the arms: above its upper limit [deg]", missing)
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:

@@ -195,13 +195,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         ),
         Parameter(
             name="lower_a4", kind="angle", unit="deg",
-            meaning="A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
-            low=-720.0, high=720.0, low_is_open=False, default=0.0,
+            meaning="A4: lower limit of the axis, both 0: no limit, but -720 .. 720 with a pitch", low=-720.0,
+            high=720.0, low_is_open=False, default=0.0,
         ),
         Parameter(
             name="upper_a4", kind="angle", unit="deg",
-            meaning="A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
-            low=-720.0, high=720.0, low_is_open=False, default=0.0,
+            meaning="A4: upper limit of the axis, both 0: no limit, but -720 .. 720 with a pitch", low=-720.0,
+            high=720.0, low_is_open=False, default=0.0,
         ),
         Parameter(
             name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
@@ -248,8 +248,8 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         upper_a2: A2: upper limit of the axis, both 0: no limit [deg]
         lower_a3: A3: lower limit of the axis, both 0: no limit [u]
         upper_a3: A3: upper limit of the axis, both 0: no limit [u]
-        lower_a4: A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]
-        upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]
+        lower_a4: A4: lower limit of the axis, both 0: no limit, but -720 .. 720 with a pitch [deg]
+        upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 with a pitch [deg]
         check_limits: inverse kinematics tests the limits
         """
         values = self._accept(
@@ -307,12 +307,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
         if not (lower_a4 >= -720.0 and lower_a4 <= 720.0):
             raise self._refusal(
-                "lower_a4: A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
+                "lower_a4: A4: lower limit of the axis, both 0: no limit, but -720 .. 720 with a pitch",
                 lower_a4=lower_a4,
             )
         if not (upper_a4 >= -720.0 and upper_a4 <= 720.0):
             raise self._refusal(
-                "upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
+                "upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 with a pitch",
                 upper_a4=upper_a4,
             )
         if not (abs(gear_coupling*pitch_zc) <= 0.0):

@@ -210,8 +210,8 @@ class TripodLinear(OffsetKinematics):
         ),
         Parameter(
             name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least distance from a type 2 singularity, a number without a unit; 0: off", low=0.0,
-            high=1.0, low_is_open=False, default=0.001,
+            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
+            low_is_open=False, default=0.001,
         ),
         Parameter(
             name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
@@ -257,7 +257,7 @@ class TripodLinear(OffsetKinematics):
         lower_a3: A3: lower limit of the axis, both 0: no limit [u]
         upper_a3: A3: upper limit of the axis, both 0: no limit [u]
         tcp_below: assembly mode: below instead of above
-        min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
+        min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
         values = self._accept(
@@ -317,7 +317,7 @@ class TripodLinear(OffsetKinematics):
             raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
         if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
             raise self._refusal(
-                "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",
+                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
                 min_type2_margin=min_type2_margin,
             )
         if not ((rail_angle > 0.0) or (abs(inner_radius - outer_radius) < arm_length)):

@@ -216,8 +216,8 @@ class TripodRotary(OffsetKinematics):
         ),
         Parameter(
             name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least distance from a type 2 singularity, a number without a unit; 0: off", low=0.0,
-            high=1.0, low_is_open=False, default=0.001,
+            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
+            low_is_open=False, default=0.001,
         ),
         Parameter(
             name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
@@ -267,7 +267,7 @@ class TripodRotary(OffsetKinematics):
         lower_a3: A3: lower limit of the axis, both 0: no limit [deg]
         upper_a3: A3: upper limit of the axis, both 0: no limit [deg]
         tcp_above: assembly mode: above instead of below
-        min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
+        min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
         values = self._accept(
@@ -328,7 +328,7 @@ class TripodRotary(OffsetKinematics):
             raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
         if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
             raise self._refusal(
-                "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",
+                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
                 min_type2_margin=min_type2_margin,
             )
         if not (2.0*stewart_radius >= distance):

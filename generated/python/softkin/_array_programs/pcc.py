@@ -162,8 +162,8 @@ class ArrayPrograms(Programs):
         require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
         a1 = DEGREE*(axis_a1 - offset_a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
-        value_elbow = (a2 - a1)/DEGREE  # the outer arm relative to the inner arm
-        # limits of the outer arm relative to the inner arm
+        value_elbow = (a2 - a1)/DEGREE  # the angle between the arms
+        # limits of the angle between the arms
         require(status, (value_elbow >= lowest_elbow) & (value_elbow <= highest_elbow), Status.UNREACHABLE)
         return status
 

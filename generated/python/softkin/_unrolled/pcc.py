@@ -92,9 +92,9 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)/DEGREE
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
-        # the outer arm relative to the inner arm
+        # the angle between the arms
         limit_value_elbow = (DEGREE*(axis_a2_right - offset_a2) - DEGREE*(axis_a1_right - offset_a1))/DEGREE
-        # limits of A1, limits of A2, limits of the outer arm relative to the inner arm
+        # limits of A1, limits of A2, limits of the angle between the arms
         refusal_right = (
             0
             if (axis_a1_right >= lowest_a1) and (axis_a2_right >= lowest_a2) and (limit_value_elbow >= lowest_elbow) and (axis_a1_right <= highest_a1) and (axis_a2_right <= highest_a2) and (
@@ -109,9 +109,9 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1)/DEGREE
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
-        # the outer arm relative to the inner arm
+        # the angle between the arms
         limit_value_elbow = (DEGREE*(axis_a2_left - offset_a2) - DEGREE*(axis_a1_left - offset_a1))/DEGREE
-        # limits of A1, limits of A2, limits of the outer arm relative to the inner arm
+        # limits of A1, limits of A2, limits of the angle between the arms
         refusal_left = (
             0
             if (axis_a1_left >= lowest_a1) and (axis_a2_left >= lowest_a2) and (limit_value_elbow >= lowest_elbow) and (axis_a1_left <= highest_a1) and (axis_a2_left <= highest_a2) and (
