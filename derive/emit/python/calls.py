@@ -52,15 +52,15 @@ def _found(search: FindRoot, text: str) -> list[str]:
 def _looked_for(search: FindRoot, function: str, spelling: tuple[str, str], printer: ScalarPrinter) -> str:
     prefix, status = spelling
     programs = ", ".join(f"{prefix}{p.name}" for p in (search.trial, search.finish))
-    given = ", ".join(tuple_of([_given(s) for s in search.given(p)]) for p in (search.trial, search.finish))
+    given = ", ".join(tuple_of([_given(s, printer) for s in search.given(p)]) for p in (search.trial, search.finish))
     values = f"{printer.print(search.start)}, {printer.print(search.wanted)}, {status}{given}, {len(search.names)}"
     scan = "" if status else f", self._array_programs().{search.trial.name}"
     return f"{function}({programs}, {values}{scan})"
 
 
-def _given(name: sp.Symbol) -> str:
+def _given(name: sp.Symbol, printer: ScalarPrinter) -> str:
     """A value, or the name of a part of the place, which the search puts in."""
-    return f'"{name.name}"' if name in PLACE else spelled(name.name)
+    return f'"{name.name}"' if name in PLACE else printer.name(name)
 
 
 def _values(call: Call, printer: ScalarPrinter) -> str:

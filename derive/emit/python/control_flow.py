@@ -10,17 +10,24 @@
     sin_q1 = across_q1/length_q1
     cos_q1, sin_q1 = elsewhere(length_q1 > 1e-11, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
 
-Programs are total, so that the first side does no harm in rows that are on the second, which are few as a rule.
+Programs are total, so that the first side does no harm in rows that are on the second, which are few as a rule. Where nothing
+has to be computed on the second side:
+
+    turn_q1 = select(absolute(rate_q1) > 1e-12, excess_q1/rate_q1, 0.0)
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import replace
 
 import sympy as sp
 
 from derive.emit.python.layout import WIDTH, fold, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
+from derive.ir.primitives import (
+    NearestPeriod,
+)
 from derive.ir.program import (
     Let,
     Statement,
@@ -39,21 +46,64 @@ def array_arm_lines(
     arms: Arms, constants: Collection[sp.Symbol], lines: Callable[[Item], list[str]], printer: ScalarPrinter
 ) -> list[str]:
     """The choice. constants: what is the same in all rows, so that a choice that only they decide is made once."""
-    holds, fails = ([line for item in side for line in lines(item)] for side in (arms.holds, arms.fails))
     condition, results = printer.print(arms.condition), [spelled(name.name) for name in arms.names]
     if symbols_of(arms.condition) <= set(constants):
+        holds, fails = ([line for item in side for line in lines(item)] for side in (arms.holds, arms.fails))
         declared = [f"{spelled(name.name)}: {_kind(name)}" for name in arms.names]
         return [*declared, *fold(f"if {condition}:"), *_indented(holds), "else:", *_indented(fails)]
+    notes = dict.fromkeys(i.comment for i in arms.holds if isinstance(i, Let) and i.name in arms.names and i.comment)
+    said = [f"# {note}" for note in notes]
+    (second, other), (first, held) = _side(arms.fails, arms.names, printer), _side(arms.holds, arms.names, printer)
+    if not second:
+        first, held = _side(arms.holds, arms.names, printer, is_written_out=len(results) == 1)
+        name, named = (condition, []) if len(results) == 1 else ("holds", fold(f"holds = {condition}"))
+        chosen = [f"{r} = select({name}, {a}, {b})" for r, a, b in zip(results, held, other, strict=True)]
+        return [*(line for item in first for line in lines(item)), *named, *said, *(x for text in chosen for x in fold(text))]
+    holds = [line for item in first for line in lines(item)]
+    fails = [line for item in second for line in lines(item)]
     kinds = {spelled(s.name): _kind(s) for s in sorted(_read(arms.fails) - set(constants), key=lambda s: spelled(s.name))}
-    function, answer = _unused(f"elsewhere_{results[0]}", holds), tuple_of(results)
+    function = _unused(f"elsewhere_{results[0]}", holds)
     return [
         "",
         *fold(f"def {function}({', '.join(f'{name}: {kind}' for name, kind in kinds.items())}) -> Reals:"),
-        *_indented([*fails, *fold(f"return {answer}")]),
+        *_indented([*fails, *fold(f"return {tuple_of(other)}")]),
         "",
         *holds,
-        *_assigned(results, f"elsewhere({condition}, {answer}, {function}, {tuple_of(list(kinds))})"),
+        *said,
+        *_assigned(results, f"elsewhere({condition}, {tuple_of(held)}, {function}, {tuple_of(list(kinds))})"),
     ]
+
+
+def _side(
+    side: Sequence[Item], names: Sequence[sp.Symbol], printer: ScalarPrinter, *, is_written_out: bool = False
+) -> tuple[list[Item], list[str]]:
+    """What a side computes, and the results: what is there already needs no other name. Notes stand before the choice.
+
+    is_written_out: whether a result that nothing else on the side reads stands where it is chosen.
+    """
+    items, results = [replace(i, note="", turn_of="") if isinstance(i, Let) and i.name in names else i for i in side], []
+    for name in names:
+        let = next((i for i in items if isinstance(i, Let) and i.name == name), None)
+        others = [i for i in items if i is not let]
+        is_short = let is not None and (let.value.is_Symbol or let.value.is_number)
+        is_short |= is_written_out and let is not None and not isinstance(let.value, NearestPeriod)
+        if let is not None and is_short and name not in _read_anywhere(others):
+            items = others
+            results.append(printer.value(name, let.value))
+        else:
+            results.append(spelled(name.name))
+    return items, results
+
+
+def _read_anywhere(items: Sequence[Item]) -> set[sp.Symbol]:
+    """What statements read, whoever binds it."""
+    found = set[sp.Symbol]()
+    for item in items:
+        if isinstance(item, Arms):
+            found |= symbols_of(item.condition) | _read_anywhere(item.holds) | _read_anywhere(item.fails)
+        else:
+            found |= reads(item)
+    return found
 
 
 def _kind(name: sp.Symbol) -> str:

@@ -12,14 +12,15 @@ from jinja2 import Environment
 
 from derive.emit.language import GENERATED, Part, environment
 from derive.emit.python import entries, setup
+from derive.emit.python.arrays import array_body
 from derive.emit.python.calls import every_root
 from derive.emit.python.layout import WIDTH, fold
 from derive.emit.python.methods import branch, carried, forwards, limits, methods, shared
 from derive.emit.python.printer import ARRAY_NAMES, ScalarPrinter, array_helpers_in, literal, primitives_in
-from derive.emit.python.program import Method, array_body, functions, has_loop, has_search, scalar_body, unpacked
+from derive.emit.python.program import Method, functions, has_loop, has_search, scalar_body, unpacked
 from derive.emit.python.refusal import explained
 from derive.emit.python.rotation import rotation_functions
-from derive.emit.python.unrolled import array_lines, array_method, can_be_unrolled, has_folds, unrolled
+from derive.emit.python.unrolled import can_be_unrolled, has_folds, unrolled
 from derive.ir import cells, roots
 from derive.ir.constants import (
     EDGE,
@@ -84,8 +85,9 @@ _EXPORTS = (
     "Axis", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "KinematicsError", "Mechanism", "OrientationImage",
     "Parameter", "Singularity", "Solution", "Status", "catalogue",
 )  # fmt: skip
-_ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Signs", "Turns", "Vector", "passed", "require")
-_ARRAY_HELPERS = ("Real", "atan2", "degrees", "Truth", "Whole", "elsewhere", "opposite", "refused", "root", "sqrt")
+_ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Signs", "Turns", "Vector")
+_NAMED_TYPES = ("Real", "Truth", "Whole")
+_ARRAY_HELPERS = ("atan2", "degrees", "elsewhere", "opposite", "root", "select", "sqrt")
 """What programs on arrays call or name, depending on how an expression is spelled."""
 _CHUNK = 8192
 """Rows of a batch at a time: 64 KiB an array."""
@@ -174,8 +176,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     scalar = methods(kin)
     arrays = [_untold(m) for m in (*shared(kin), *forwards(kin), branch(kin), limits(kin), *carried(kin))]
     array_programs = _array_programs(kin)
-    array_types = _ARRAY_TYPES + (("advanced", "initial", "settled") if any(has_loop(m.program) for m in arrays) else ())
-    array_types += ("Values",) if any(m.is_shared for m in arrays) else ()
+    loops = ("advanced", "initial", "settled") if any(has_loop(m.program) for m in arrays) else ()
     reasons = explained(reasons_of(kin))
     bodies = [scalar_body(m, reasons) if m.is_explained else scalar_body(_untold(m)) for m in scalar]
     context = {
@@ -199,18 +200,16 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "methods": [{"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)],
     }
     array_methods = [{"head": _array_head(m), "summary": m.summary, "body": array_body(m)} for m in arrays]
-    if can_be_unrolled(kin) and kin.branches:
-        every = array_method(kin)
-        array_methods.append({"head": _every_head(every), "summary": every.summary, "body": array_lines(kin, every)})
-        arrays.append(every)
-    helpers = array_helpers_in((line for m in array_methods for line in m["body"]), _ARRAY_HELPERS)
+    array_lines = [line for m in array_methods for line in m["body"]]
+    called = {array_programs, "passed", "require", *loops, *array_helpers_in(array_lines, _ARRAY_HELPERS)}
+    shared_types = {"Values"} if any(m.is_shared for m in arrays) else set()
     array_context = {
         **names,
         "array_programs": array_programs,
-        "imports": _sorted({array_programs, *array_types, *helpers, *_array_functions(arrays)}),
+        "imports": _sorted(called | _array_functions(arrays)),
+        "types": _sorted({*_ARRAY_TYPES, *shared_types, *array_helpers_in(array_lines, _NAMED_TYPES)}),
         "methods": array_methods,
         "searches": any(map(has_search, kin.shared)),
-        "takes_signs": can_be_unrolled(kin) and kin.branches,
     }
     files = {
         f"softkin/{names['module']}.py": templates.get_template("mechanism.py.j2").render(context),
@@ -285,12 +284,6 @@ def _array_head(method: Method) -> list[str]:
     kind = "tuple[Vector, Rotation, Reals]" if method.kind == "Pose" else method.kind
     result = f"tuple[{kind}, Codes]" if kind else "Codes"
     return fold(f"def {method.name}(self{arguments}) -> {result}:", 4)
-
-
-def _every_head(method: Method) -> list[str]:
-    """The unrolled branches are told the signs of the slots, as any other programs, and know them."""
-    arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
-    return fold(f"def {method.name}(self{arguments}, signs: Sequence[Signs]) -> {method.kind}:", 4)
 
 
 def _sorted(found: set[str]) -> list[str]:

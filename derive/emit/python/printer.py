@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from keyword import iskeyword
 
 import sympy as sp
@@ -23,7 +23,7 @@ from derive.optimize.inline import Grouped
 TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
-    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "refused", "no_offsets", "opposite",
+    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "no_offsets", "opposite", "holds",
 }  # fmt: skip
 """Names that a generated method uses for itself."""
 ARRAY_NAMES = {"abs": "absolute"}
@@ -122,7 +122,15 @@ class ScalarPrinter(ExpressionPrinter):
 
 
 class ArrayPrinter(ScalarPrinter):
-    """Arrays: a choice evaluates both arms, and conditions are masks."""
+    """Arrays: a choice evaluates both arms, and conditions are masks. Constants are read where they are: `k.arm_length`."""
+
+    def __init__(self, constants: Collection[str] = (), *, modulo_turns: bool = False) -> None:
+        """constants: their names; modulo_turns: as on plain numbers."""
+        super().__init__(modulo_turns=modulo_turns)
+        self.constants = frozenset(constants)
+
+    def name(self, symbol: sp.Symbol) -> str:
+        return f"k.{spelled(symbol.name)}" if symbol.name in self.constants else super().name(symbol)
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
         if isinstance(node, sp.Not):

@@ -1,8 +1,8 @@
-"""A program as the body of a Python method: on plain numbers with early returns, on arrays with masks."""
+"""A program as the body of a Python method on plain numbers, with early returns; `arrays` has the same with masks."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
@@ -10,10 +10,9 @@ import sympy as sp
 
 from derive.emit.expression import FUNCTION_KEYS
 from derive.emit.python import calls as python_calls
-from derive.emit.python.control_flow import array_arm_lines, fixed
 from derive.emit.python.layout import WIDTH, fold, taken_apart, tuple_of
-from derive.emit.python.loops import array_end, array_head, scalar_end, scalar_head, solve_lines
-from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, literal, spelled
+from derive.emit.python.loops import scalar_end, scalar_head, solve_lines
+from derive.emit.python.printer import ScalarPrinter, literal, spelled
 from derive.emit.python.refusal import PLAIN, Refusals, conjunction
 from derive.ir.constants import (
     DEGREE,
@@ -40,7 +39,6 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     PLACE,
-    real,
     symbols_of,
 )
 from derive.ir.verify import verify
@@ -50,8 +48,7 @@ from derive.optimize.control_flow import Arms, Item, in_arms, spared, told_on_si
 Shape = str | tuple["Shape", ...]
 """Names, nested as the tuples of the method's arguments and results are."""
 
-_SCALAR, _ARRAY = ScalarPrinter(), ArrayPrinter()
-_MODULO_TURNS, _ARRAY_TURNS = ScalarPrinter(modulo_turns=True), ArrayPrinter(modulo_turns=True)
+_SCALAR, _MODULO_TURNS = ScalarPrinter(), ScalarPrinter(modulo_turns=True)
 
 
 @dataclass(frozen=True)
@@ -96,7 +93,7 @@ class Method:
 def scalar_body(method: Method, refusals: Refusals = PLAIN) -> list[str]:
     """The body on plain numbers: the first condition that does not hold refuses."""
     lines = [*unpacked(method), *_constants(method, "self._constants"), *statement_lines(method.program, refusals, _SCALAR)]
-    return [*lines, *fold(f"return {_values(method, _SCALAR) or refusals.success}")]
+    return [*lines, *fold(f"return {values_of(method, _SCALAR) or refusals.success}")]
 
 
 def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
@@ -113,7 +110,7 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
         if isinstance(item, Require):
             lines += _refusing(same, refusals)
         elif isinstance(item, Iterate):
-            lines += [*scalar_head(item, printer), *_step(item, printer)]
+            lines += [*scalar_head(item, printer), *step_lines(item, printer)]
             lines += scalar_end(item, conjunction([item.done]), refusals.of_loop(item), printer)
         elif isinstance(item, Call):
             lines += python_calls.scalar_lines(item, printer, refusals.of_call())
@@ -125,7 +122,7 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
 
 
 def _refusing(requires: Sequence[Require], refusals: Refusals) -> list[str]:
-    return [*_note(requires[0].comment), *refusals.lines(requires)]
+    return [*note_lines(requires[0].comment), *refusals.lines(requires)]
 
 
 def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
@@ -163,47 +160,6 @@ def _turn_lines(let: Let, value: NearestPeriod, printer: ScalarPrinter) -> list[
         f"if not {low} <= {away} < {high}:",
         f"    {name} = nearest_period({name}, {centre})",
     ]
-
-
-def array_body(method: Method) -> list[str]:
-    """The body on arrays: every statement for all rows, a row's status is its first condition that does not hold."""
-    lines = array_statements(method)
-    values = _values(method, _ARRAY)
-    if method.is_shared:
-        return [*lines, *fold(f"return {values}")]
-    return [*lines, *fold(f"return {values}, status" if values else "return status")]
-
-
-def array_statements(method: Method) -> list[str]:
-    """The same without the return."""
-    lines = [*unpacked(method), *_constants(method, "self.constants")]
-    if not method.is_shared:
-        first = method.arguments[0]
-        lines.append(f"status = passed({first.name}{'[0]' if first.kind == 'Rotation' else ''})")
-    program = without_conversions(method.program)
-    constants = fixed(program.body, {real(name) for name in constants_of(method)})
-    for item, same in grouped(in_arms(program.body, [o.value for o in program.outputs])):
-        if isinstance(item, Iterate):
-            lines += [*array_head(item, _ARRAY), *_step(item, _ARRAY), *array_end(item, _ARRAY)]
-        elif isinstance(item, Call):
-            lines += python_calls.array_lines(item, _ARRAY)
-        elif isinstance(item, FindRoot):
-            lines += python_calls.array_search(item, _ARRAY)
-        elif isinstance(item, Require):
-            condition = sp.And(*(r.condition for r in same))
-            lines += [*_note(item.comment), *fold(f"require(status, {_ARRAY.print(condition)}, Status.{item.otherwise.name})")]
-        else:
-            lines += _array_item_lines(item, constants)
-    return lines
-
-
-def _array_item_lines(item: Item, constants: Collection[sp.Symbol]) -> list[str]:
-    """A binding, or a choice."""
-    if isinstance(item, Arms):
-        return array_arm_lines(item, constants, lambda inner: _array_item_lines(inner, constants), _ARRAY)
-    assert isinstance(item, Let | Solve)
-    is_turn = isinstance(item, Let) and isinstance(item.value, NearestPeriod)
-    return binding_lines(item, _ARRAY_TURNS if is_turn else _ARRAY)
 
 
 def functions(programs: Sequence[Program]) -> list[str]:
@@ -248,7 +204,7 @@ def binding_lines(statement: Let | Solve, printer: ScalarPrinter) -> list[str]:
     return let_lines(statement, printer) if isinstance(statement, Let) else solve_lines(statement, printer)
 
 
-def _step(loop: Iterate, printer: ScalarPrinter) -> list[str]:
+def step_lines(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     """The step of a loop: let lines are folded as if they were not indented, so they are a little longer."""
     return [f"    {line}" for s in loop.step for line in binding_lines(s, printer)]
 
@@ -261,10 +217,11 @@ def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
     line = f"{spelled(let.name.name)} = {value}"
     if let.comment and len(line) + len(let.comment) + 4 <= WIDTH:
         return [f"{line}  # {let.comment}"]
-    return [*_note(let.comment), *fold(line)]
+    return [*note_lines(let.comment), *fold(line)]
 
 
-def _note(note: str) -> list[str]:
+def note_lines(note: str) -> list[str]:
+    """What the reader is told, as a comment; nothing where that is nothing."""
     return [f"# {note}"] if note else []
 
 
@@ -328,7 +285,8 @@ def constants_of(method: Method) -> list[str]:
     return sorted(_read(method.program) - given)
 
 
-def _values(method: Method, printer: ScalarPrinter) -> str:
+def values_of(method: Method, printer: ScalarPrinter) -> str:
+    """What a method returns where nothing refuses, in its shape; empty where it returns nothing."""
     values = {o.name: printer.print(o.value) for o in method.program.outputs}
 
     def text(shape: Shape) -> str:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from derive.emit.python.arrays import array_body
 from derive.emit.python.methods import ROTATION, ROTATION_ARGUMENT
 from derive.emit.python.printer import ARRAY_NAMES, array_helpers_in, primitives_in
-from derive.emit.python.program import Method, array_body, scalar_body
+from derive.emit.python.program import Method, scalar_body
 from derive.emit.python.refusal import explained
 from derive.equations.rotation_repair import rotation_program
 from derive.ir.passes import untold

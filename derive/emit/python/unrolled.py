@@ -1,4 +1,4 @@
-"""All branches of the inverse in one straight line: three functions of plain numbers, and one program on arrays."""
+"""All branches of the inverse in one straight line: three functions of plain numbers."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ import sympy as sp
 
 from derive.emit.python.layout import fold, repeated, tuple_of
 from derive.emit.python.methods import POSITION, ROTATION, branch
-from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, primitives_in, spelled
+from derive.emit.python.printer import ScalarPrinter, primitives_in, spelled
 from derive.emit.python.program import (
     Argument,
     Method,
-    array_statements,
     constants_of,
     item_lines,
     let_lines,
@@ -58,7 +57,6 @@ from derive.solver.folds import far_from_folds
 
 NO_OFFSETS = "no_offsets"
 """Whether all axes have their zero where the joints have it: then nothing is added to them."""
-_ARRAY = ArrayPrinter()
 _SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True, is_trusted=True)
 _FRAME = Argument("frame", "PlainFrame", (POSITION, ROTATION))
 
@@ -102,28 +100,6 @@ def every_branch(kin: Kinematics) -> Program:
 def branches(kin: Kinematics, one: Program) -> Program:
     """All branches, each axis in any turn. one: a single branch for input that is trusted."""
     return common_parts(any_turn(with_twins(unroll(one, signs(kin)))), signs(kin), _constants(kin))
-
-
-def array_method(kin: Kinematics) -> Method:
-    """All branches on arrays, turns as commanded, limits not tested."""
-    program = unroll(untold(kin.branch), signs(kin))
-    arguments = tuple(a for a in branch(kin).arguments if a.name != "signs")
-    return Method("every_branch", "Every slot: its axes and statuses.", program, arguments, "tuple[tuple[Reals, Codes], ...]", ())
-
-
-def array_lines(kin: Kinematics, method: Method) -> list[str]:
-    """Its body."""
-    found = {o.name: o.value for o in method.program.outputs}
-    lines = array_statements(method)
-    refusals = [_ARRAY.whole(found[suffixed(REFUSAL, signs(kin), choice)]) for choice in choices(len(kin.branches))]
-    values = {name: _ARRAY.print(value) for name, value in found.items() if not name.startswith(REFUSAL)}
-    statuses = {refusal: f"status{refusal.removeprefix(REFUSAL)}" if refusal != "0" else "status" for refusal in refusals}
-    lines += [f"{status} = refused(status, {refusal})" for refusal, status in statuses.items() if status != "status"]
-    lines.append("return (")
-    for choice, refusal in zip(choices(len(kin.branches)), refusals, strict=True):
-        axes = tuple_of([values[suffixed(j.axis.name, signs(kin), choice)] for j in kin.mechanism.joints])
-        lines += fold(f"({axes}, {statuses[refusal]}),", 4)
-    return [*lines, ")"]
 
 
 def _nearest(kin: Kinematics, program: Program) -> Program:

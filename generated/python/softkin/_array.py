@@ -16,7 +16,7 @@ from softkin._types import Status
 __all__ = [
     "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Signs", "Turns", "Vector",
     "StartedPrograms", "Truth", "Values", "Whole", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "opposite", "passed",
-    "refused", "require", "root", "select", "settled", "sin", "solve", "sqrt",
+    "require", "root", "select", "settled", "sin", "solve", "sqrt",
 ]  # fmt: skip
 
 Array: TypeAlias = NDArray[np.float64]
@@ -36,6 +36,7 @@ Codes: TypeAlias = NDArray[np.uint8]
 
 _TURN = 2.0 * np.pi
 _HALF_AND_EDGE = 180.0 + 1e-9
+_BOTH_SIGNS = np.array([1, -1])
 
 
 class Programs(ABC):
@@ -52,10 +53,15 @@ class Programs(ABC):
         """The axes of one branch, periods included, limits not."""
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
-    ) -> tuple[tuple[Reals, Codes], ...]:
-        """Every slot: its axes and statuses. signs: of the branches, slot by slot."""
-        return tuple([self.branch(position, rotation, slot, turns, reference) for slot in signs])
+        self, position: Vector, rotation: Rotation, branches: int, turns: Turns, reference: Reals
+    ) -> tuple[Reals, Codes]:
+        """The axes and statuses of every slot, in arrays (2, …, 2, rows): of two for a branch, the first stands last.
+
+        The sign of a branch is an array along an axis of its own. So a value is computed for the signs that it depends on,
+        and no others: where one branch decides it, for (2, rows).
+        """
+        signs = tuple([_BOTH_SIGNS.reshape(2, *(1,) * (k + 1)) for k in range(branches)])
+        return self.branch(position, rotation, signs, turns, reference)
 
     @abstractmethod
     def limits(self, axes: Reals) -> Codes:
@@ -80,16 +86,25 @@ class OrientationPrograms(Programs):
         """From a flange that turns to the end point."""
 
 
-def passed(values: tuple[Real, ...]) -> Codes:
-    """The statuses of rows before any condition: all OK. One for all rows where all values are."""
-    return np.zeros(next((v.shape for v in values if isinstance(v, np.ndarray)), ()), np.uint8)
+def passed(*given: Values) -> Codes:
+    """The statuses before any condition: all OK, one for every entry that what is given has together."""
+    return np.zeros(_common_shape([value for part in given for value in _numbers(part)]), np.uint8)
+
+
+def _numbers(values: Values) -> Values:
+    """The values, where they are vectors the numbers in them."""
+    return tuple([entry for value in values for entry in (value if isinstance(value, tuple) else (value,))])
+
+
+def _common_shape(values: Sequence[Any]) -> tuple[int, ...]:
+    """What the values have together: a value may be the same for all rows, or for all signs of a branch."""
+    return np.broadcast_shapes(*{value.shape for value in values if isinstance(value, np.ndarray)})
 
 
 def require(status: Codes, condition: Truth, otherwise: Status) -> None:
     """Give the rows where the condition does not hold their status, unless they have one already."""
-    if everywhere(condition):
-        return
-    status[np.logical_not(condition) & (status == Status.OK)] = otherwise
+    if not everywhere(condition):
+        status += np.uint8(otherwise) * (np.logical_not(condition) & (status == Status.OK))
 
 
 def everywhere(condition: Truth) -> bool:
@@ -103,29 +118,25 @@ def opposite(condition: Truth) -> Truth:
 
 
 def elsewhere(condition: Truth, values: Values, other: Callable[..., Values], given: Values) -> Values:
-    """The values where a condition holds; in the other rows, what `other` makes of what is given there."""
+    """The values where a condition holds; in the other rows, what `other` makes of what is given there.
+
+    `other` gets its rows in one line, whatever axes the values have.
+    """
     if everywhere(condition):
         return values
     if not isinstance(condition, np.ndarray):
         return other(*given)
-    rows = np.flatnonzero(~condition)
-    found = other(*[value[rows] if isinstance(value, np.ndarray) else value for value in given])
-    return tuple([_replaced(value, rows, new, condition.shape) for value, new in zip(values, found, strict=True)])
+    shape = _common_shape([condition, *values, *given])
+    rows = np.nonzero(np.broadcast_to(~condition, shape))
+    found = other(*[np.broadcast_to(v, shape)[rows] if isinstance(v, np.ndarray) else v for v in given])
+    return tuple([_replaced(value, rows, new, shape) for value, new in zip(values, found, strict=True)])
 
 
-def _replaced(value: Real, rows: NDArray[np.intp], new: Real, shape: tuple[int, ...]) -> Array:
+def _replaced(value: Real, rows: tuple[NDArray[np.intp], ...], new: Real, shape: tuple[int, ...]) -> Array:
     """The values with new ones in some rows."""
     whole = np.array(np.broadcast_to(value, shape))
     whole[rows] = new
     return whole
-
-
-def refused(status: Codes, refusal: Any) -> Codes:
-    """The statuses of a slot: those of all slots, else its own, which come as numbers."""
-    if not isinstance(refusal, np.ndarray) and refusal == 0:
-        return status
-    codes = np.asarray(refusal).astype(np.uint8)
-    return np.where(status == Status.OK, codes, status) if status.any() else np.broadcast_to(codes, status.shape)
 
 
 def initial(*values: Real) -> Values:
@@ -221,7 +232,8 @@ def solve(matrix: Sequence[Reals], right: Sequence[Reals]) -> Reals:
     """
     size = len(matrix)
     rows = [[*row, *more] for row, more in zip(matrix, right or [()] * size, strict=True)]
-    table = np.array(np.broadcast_arrays(*(entry for row in rows for entry in row))).reshape(size, len(rows[0]), -1)
+    entries = np.broadcast_arrays(*(entry for row in rows for entry in row))
+    table = np.array(entries).reshape(size, len(rows[0]), -1)
     largest = np.max(np.abs(table[:, :size]), axis=(0, 1))
     tiny, determinant = 1e-14 * largest, np.ones_like(largest)
     regular = np.all(np.abs(table) <= 1e30, axis=(0, 1)) & (largest >= 1.0 / 1e30)
@@ -241,4 +253,5 @@ def solve(matrix: Sequence[Reals], right: Sequence[Reals]) -> Reals:
             table[k, size:] -= table[k, i] * table[i, size:]
         table[k, size:] /= np.where(regular, table[k, k], 1.0)
     solution = np.where(regular, table[:, size:], 0.0)
-    return (np.where(regular, determinant, 0.0), *solution.reshape(-1, len(tiny)))
+    found = np.where(regular, determinant, 0.0), *solution.reshape(-1, len(tiny))
+    return tuple([value.reshape(entries[0].shape) for value in found])

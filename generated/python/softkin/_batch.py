@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 CHUNK = 8192
 """Rows at a time."""
+EVERY_SLOT = 3 * CHUNK
+"""Rows times slots at a time, where all slots are solved together: many values are the same for several of them."""
 _UNTRIED = 255
 """Stands in the statuses for rows that no slot was tried for."""
 
@@ -105,22 +107,23 @@ def inverse_all(
 ) -> tuple[Array, Codes]:
     """Every slot of every row."""
     table = Table(robot, positions, rotations, references)
-    every, turns = slots((AUTOMATIC,) * robot.BRANCHES), (0,) * len(robot.PERIOD_AXES)
-    width, signs = len(robot.AXES), [s for _, s in every]
-    axes, statuses = np.empty((table.count, len(every), width)), np.empty((table.count, len(every)), np.uint8)
+    turns, width, count = (0,) * len(robot.PERIOD_AXES), len(robot.AXES), 2**robot.BRANCHES
+    axes, statuses = np.empty((table.count, count, width)), np.empty((table.count, count), np.uint8)
+    size = min(CHUNK, EVERY_SLOT // count)
     # Columns whose distance is no power of two: such columns displace each other from the cache when they become rows.
-    columns_of_slots = np.empty((len(every), width, min(table.count, CHUNK) + 8))
-    for rows in _chunks(table.count):
+    of_slots = np.empty((count, width, min(table.count, size) + 8))
+    of_signs = of_slots.reshape(*(2,) * robot.BRANCHES, *of_slots.shape[1:])
+    for rows in _chunks(table.count, size):
         with np.errstate(all="ignore"):
             poses = table.at(rows)
-            cells = columns_of_slots[:, :, : poses.count]
-            for slot, (found, status) in enumerate(
-                programs.every_branch(poses.position, poses.rotation, turns, poses.reference, signs)
-            ):
-                statuses[rows, slot] = _limited(robot, programs, found, _later(poses.refused, status))
-                for i, value in enumerate(found):
-                    cells[slot, i] = value
-        axes[rows] = cells.transpose(2, 0, 1)
+            found, status = programs.every_branch(
+                poses.position, poses.rotation, robot.BRANCHES, turns, poses.reference
+            )
+            status = _limited(robot, programs, found, _later(poses.refused, status))
+        for i, value in enumerate(found):
+            of_signs[..., i, : poses.count] = value
+        axes[rows] = of_slots[:, :, : poses.count].transpose(2, 0, 1)
+        statuses[rows] = status.reshape(count, poses.count).T
         axes[rows][statuses[rows] != Status.OK] = np.nan
     return axes, statuses
 
@@ -144,9 +147,10 @@ def _chosen(robot: Mechanism, programs: Programs, poses: Poses, chosen: Configur
     if named.all():
         return _named(robot, programs, poses, chosen)
     axes, status = np.full((len(robot.AXES), poses.count), np.nan), np.full(poses.count, Status.BAD_INPUT, np.uint8)
-    for mask, solve in ((named, _named), (chosen.are_bytes & ~named, _nearest)):
-        if mask.any():
-            rows: Rows = slice(None) if mask.all() else np.flatnonzero(mask)
+    for mask, solve, size in (
+        (named, _named, CHUNK), (chosen.are_bytes & ~named, _nearest, EVERY_SLOT // 2**robot.BRANCHES)
+    ):
+        for rows in _pieces(mask, size):
             found, outcome = solve(robot, programs, poses.at(rows, len(status[rows])), chosen.at(rows))
             status[rows] = outcome
             for i, value in enumerate(found):
@@ -161,12 +165,11 @@ def _named(robot: Mechanism, programs: Programs, poses: Poses, chosen: Configura
 
 def _nearest(robot: Mechanism, programs: Programs, poses: Poses, chosen: Configurations) -> tuple[Reals, Codes]:
     """Every row on the nearest of the slots that its bytes leave open."""
-    every = slots((AUTOMATIC,) * robot.BRANCHES)
-    signs = [s for _, s in every]
-    tried = programs.every_branch(poses.position, poses.rotation, chosen.turns, poses.reference, signs)
+    position, rotation, branches = poses.position, poses.rotation, robot.BRANCHES
+    axes, status = programs.every_branch(position, rotation, branches, chosen.turns, poses.reference)
     best = _Best(robot, poses)
-    for (slot, _), (axes, outcome) in zip(every, tried, strict=True):
-        best.take(axes, outcome, chosen.allow(slot))
+    for (slot, _), at in zip(slots((AUTOMATIC,) * branches), np.ndindex((2,) * branches), strict=True):
+        best.take(tuple([np.broadcast_to(value, status.shape)[at] for value in axes]), status[at], chosen.allow(slot))
     return tuple(best.axes), best.status
 
 
@@ -225,5 +228,13 @@ def _write(target: Array, values: tuple[Real, ...], failed: Mask) -> None:
         target[failed] = np.nan
 
 
-def _chunks(count: int) -> Iterator[slice]:
-    return (slice(start, start + CHUNK) for start in range(0, count, CHUNK))
+def _chunks(count: int, size: int = CHUNK) -> Iterator[slice]:
+    return (slice(start, start + size) for start in range(0, count, size))
+
+
+def _pieces(mask: Mask, size: int) -> Iterator[Rows]:
+    """The rows of a mask, so many at a time."""
+    if mask.all():
+        return _chunks(len(mask), size)
+    chosen = np.flatnonzero(mask)
+    return (chosen[piece] for piece in _chunks(len(chosen), size))

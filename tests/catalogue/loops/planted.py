@@ -49,10 +49,14 @@ def spoiled(mechanism: Mechanism, *changes: tuple[str, str]) -> type[softkin.Mec
     short = original.__module__.rpartition(".")[2]
     names = original.__module__, f"softkin._array_programs.{short}", f"softkin._unrolled.{short}"
     texts = [text_of_module(name) for name in names]
+    constants = set(_OF_THE_MACHINE.findall(texts[1]))
+    texts[1] = _OF_THE_MACHINE.sub(r"\1", texts[1])
     assert changes[0][0] in texts[0], f"{names[0]} has no {changes[0][0]!r}"
     for right, _ in changes:
         assert any(right in text for text in texts), f"{short} has no {right!r}"
-    scalar, arrays, unrolled = (_loaded(name, text, changes) for name, text in zip(names, texts, strict=True))
+    texts = [_changed(text, changes) for text in texts]
+    texts[1] = re.sub(rf"\b({'|'.join(constants)})\b", r"k.\1", texts[1])
+    scalar, arrays, unrolled = (_loaded(f"{name} with {changes[0][1]}", text) for name, text in zip(names, texts, strict=True))
     scalar.__dict__["unrolled"] = unrolled.unrolled
     found: type[softkin.Mechanism] = getattr(scalar, original.__name__)
     found._array_programs = lambda self: arrays.ArrayPrograms(self._constants)  # type: ignore[attr-defined,method-assign]
@@ -66,14 +70,18 @@ def text_of_module(name: str) -> str:
     return _INLINE_ROOT.sub(r"root(\1)", Path(source.__file__).read_text(encoding="utf-8"))
 
 
-def _loaded(name: str, text: str, changes: tuple[tuple[str, str], ...]) -> ModuleType:
+def _changed(text: str, changes: tuple[tuple[str, str], ...]) -> str:
     for right, wrong in changes:
         text = text.replace(right, wrong)
+    return text
+
+
+def _loaded(name: str, text: str) -> ModuleType:
     module = ModuleType(f"{name}_spoiled")
     module.__dict__["root"] = root
     sys.modules[module.__name__] = module  # named tuples and annotations look it up
     try:
-        exec(compile(text, f"{name} with {changes[0][1]}", "exec"), module.__dict__)
+        exec(compile(text, name, "exec"), module.__dict__)
     finally:
         del sys.modules[module.__name__]
     return module
@@ -81,6 +89,8 @@ def _loaded(name: str, text: str, changes: tuple[tuple[str, str], ...]) -> Modul
 
 _INLINE_ROOT = re.compile(r"\(sqrt\((\w+)\) if \1 > 0\.0 else 0\.0\)")
 """A root as the scalar programs have it: read as the call that the programs on arrays have."""
+_OF_THE_MACHINE = re.compile(r"\bk\.(\w+)")
+"""A constant as the programs on arrays have it; the others give it a name of its own."""
 FIVE_BAR, TRIPOD, DELTA = "Kin_P2C_Type1", "Kin_Tripod_Rotary", "Kin_Delta_P3C_Type3"
 ALIGNED = "(rod_1_x*rod_2_y - rod_1_y*rod_2_x)"
 TOWARDS_THE_MODE = f"assembly_sign_by_outer_arm_squared*{ALIGNED}"

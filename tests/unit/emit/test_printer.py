@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from softkin import _array, _scalar
 from softkin._types import Status as Code
 
+from derive.emit.python.arrays import array_body
 from derive.emit.python.layout import WIDTH, fold
 from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, literal, spelled
-from derive.emit.python.program import Argument, Method, array_body, scalar_body
+from derive.emit.python.program import Argument, Method, scalar_body
 from derive.ir.constants import (
     DEGREE,
 )

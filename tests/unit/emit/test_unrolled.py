@@ -8,7 +8,7 @@ import pickle
 import numpy as np
 import pytest
 import softkin
-from softkin import KinematicsError, Mechanism, Solution, Status
+from softkin import KinematicsError, Mechanism, Solution, Status, _batch
 from softkin._batch import CHUNK
 from softkin._configuration import slots
 
@@ -115,6 +115,29 @@ def test_a_batch_of_all_branches_is_its_rows(description: Description) -> None:
                 assert np.all(np.isnan(axes[row, slot]))
             else:
                 assert axes[row, slot] == pytest.approx(solution.axes, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
+def test_all_branches_of_a_row_are_the_same_in_any_company(description: Description, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Poses at right angles, many of them singular, between others and garbage, bit for bit; chunks of a few rows."""
+    robot = robot_of(description)
+    random, count = np.random.default_rng(4), 4 if description.search is not None else 24
+    spans = np.array([90.0 if axis.unit == "deg" else 40.0 for axis in robot.AXES])
+    axes = random.integers(-2, 3, (count, len(spans))) * spans
+    positions, rotations, _, statuses = robot.forward_batch(axes)
+    (frames, _), others = samples(robot, count), (statuses != Status.OK) | (np.arange(count) % 3 == 2)
+    for row in np.flatnonzero(others):
+        positions[row], rotations[row] = frames[row]
+    positions[1::11] = np.nan
+    whole = robot.inverse_all_batch(positions, rotations, axes)
+    monkeypatch.setattr(_batch, "EVERY_SLOT", 5 * 2**robot.BRANCHES)
+    parts = robot.inverse_all_batch(positions, rotations, axes)
+    assert all(np.array_equal(one, other, equal_nan=True) for one, other in zip(whole, parts, strict=True))
+    for row in range(count):
+        alone = robot.inverse_all_batch(positions[[row]], rotations[[row]], axes[[row]])
+        assert np.array_equal(alone[1][0], whole[1][row])
+        np.testing.assert_allclose(alone[0][0], whole[0][row], rtol=1e-12, atol=1e-12)
+    assert (whole[1] == Status.OK).any()
 
 
 @pytest.mark.parametrize("name", ["Kin_ArticulatedRobot_6DOF", "Kin_Delta_P3C_Type3"])

@@ -7,13 +7,7 @@ from typing import TYPE_CHECKING
 
 from softkin._array import (
     DEGREE,
-    Codes,
     OrientationPrograms,
-    Reals,
-    Rotation,
-    Signs,
-    Turns,
-    Vector,
     absolute,
     cos,
     degrees,
@@ -27,6 +21,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
+    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
     from softkin.caxis import Constants
 
 
@@ -41,11 +36,10 @@ class ArrayPrograms(OrientationPrograms):
         """Position, rotation and the signed margin of every branch."""
         (axis_c,) = axes
         k = self.constants
-        offset_c = k.offset_c
         status = passed(axes)
         # numbers of reasonable size
         require(status, absolute(axis_c) <= 1e9, Status.BAD_INPUT)
-        c = DEGREE*(axis_c - offset_c)
+        c = DEGREE*(axis_c - k.offset_c)
         cos_c = cos(c)
         sin_c = sin(c)
         return ((0.0, 0.0, 0.0), ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0)), ()), status
@@ -58,34 +52,29 @@ class ArrayPrograms(OrientationPrograms):
         (turn_c,) = turns
         (ref_c,) = reference
         k = self.constants
-        mid_c = k.mid_c
-        offset_c = k.offset_c
-        single_c = k.single_c
-        status = passed(position)
+        status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
         require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        open_c = select(k.single_c, k.mid_c, ref_c)  # C: where its turn is open
+        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
+        axis_c = nearest_period(k.offset_c + degrees(heading_across, heading_along), near_c)  # C: its turn
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
-        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
-        axis_c = nearest_period(offset_c + degrees(heading_across, heading_along), near_c)  # C: its turn
         return (axis_c,), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         (axis_c,) = axes
         k = self.constants
-        highest_c = k.highest_c
-        lowest_c = k.lowest_c
         status = passed(axes)
         # limits of C
-        require(status, (axis_c >= lowest_c) & (axis_c <= highest_c), Status.UNREACHABLE)
+        require(status, (axis_c >= k.lowest_c) & (axis_c <= k.highest_c), Status.UNREACHABLE)
         return status
 
     def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
         """From a flange that turns to the end point."""
-        status = passed(rotation[0])
+        status = passed(rotation, flange_axis, base_axis)
         return (0.0, 0.0, 0.0), status

@@ -7,14 +7,7 @@ from typing import TYPE_CHECKING
 
 from softkin._array import (
     DEGREE,
-    Codes,
     Programs,
-    Real,
-    Reals,
-    Rotation,
-    Signs,
-    Turns,
-    Vector,
     absolute,
     atan2,
     cos,
@@ -31,6 +24,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
+    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.crane import Constants
 
 
@@ -45,9 +39,6 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_r, axis_theta, axis_phi = axes
         k = self.constants
-        offset_phi = k.offset_phi
-        offset_r = k.offset_r
-        offset_theta = k.offset_theta
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -55,17 +46,9 @@ class ArrayPrograms(Programs):
             (absolute(axis_phi) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_theta) <= 1e9),
             Status.BAD_INPUT,
         )
-        r = axis_r - offset_r
-        # R where the machine has no pose
-        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
-        axis_phi_minus_offset_phi = axis_phi - offset_phi
-        # Phi where the machine has no pose
-        require(
-            status,
-            (axis_phi_minus_offset_phi >= -1e-9) & (axis_phi_minus_offset_phi <= 180.000000181),
-            Status.IMPOSSIBLE,
-        )
-        theta = DEGREE*(axis_theta - offset_theta)
+        r = axis_r - k.offset_r
+        axis_phi_minus_offset_phi = axis_phi - k.offset_phi
+        theta = DEGREE*(axis_theta - k.offset_theta)
         cos_theta = cos(theta)
         phi = DEGREE*axis_phi_minus_offset_phi
         sin_phi = sin(phi)
@@ -75,6 +58,14 @@ class ArrayPrograms(Programs):
         y = r_times_sin_phi*sin_theta  # y: affine in the y equation
         cos_phi = cos(phi)
         z = r*cos_phi  # z: affine in the z equation
+        # R where the machine has no pose
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
+        # Phi where the machine has no pose
+        require(
+            status,
+            (axis_phi_minus_offset_phi >= -1e-9) & (axis_phi_minus_offset_phi <= 180.000000181),
+            Status.IMPOSSIBLE,
+        )
         return ((x, y, z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
@@ -85,13 +76,7 @@ class ArrayPrograms(Programs):
         (turn_theta,) = turns
         _, ref_theta, ref_phi = reference
         k = self.constants
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_theta = k.mid_theta
-        offset_phi = k.offset_phi
-        offset_r = k.offset_r
-        offset_theta = k.offset_theta
-        single_theta = k.single_theta
-        status = passed(position)
+        status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
         require(
             status,
@@ -103,60 +88,52 @@ class ArrayPrograms(Programs):
         )
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        axis_r = offset_r + radius_phi
+        axis_r = k.offset_r + radius_phi
 
         def elsewhere_direction_x_theta(ref_theta: Real) -> Reals:
-            free_theta = (ref_theta - offset_theta)*DEGREE
-            direction_x_theta = cos(free_theta)  # its reference where it is free
+            free_theta = (ref_theta - k.offset_theta)*DEGREE
+            direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
             return (direction_x_theta, direction_y_theta)
 
-        direction_x_theta = x  # its reference where it is free
-        direction_y_theta = y
+        # its reference where it is free
         direction_x_theta, direction_y_theta = elsewhere(
-            radius_theta > machine_scale_times_free_angle,
-            (direction_x_theta, direction_y_theta),
+            radius_theta > k.machine_scale_times_free_angle,
+            (x, y),
             elsewhere_direction_x_theta,
             (ref_theta,),
         )
-        open_theta = select(single_theta, mid_theta, ref_theta)  # Theta: where its turn is open
+        open_theta = select(k.single_theta, k.mid_theta, ref_theta)  # Theta: where its turn is open
         near_theta = select(turn_theta != 0, 360.0*select(turn_theta > 0, turn_theta - 1, turn_theta), open_theta)
         # Theta: its turn
-        axis_theta = nearest_period(offset_theta + degrees(direction_y_theta, direction_x_theta), near_theta)
+        axis_theta = nearest_period(k.offset_theta + degrees(direction_y_theta, direction_x_theta), near_theta)
 
         def elsewhere_direction_x_phi(ref_phi: Real) -> Reals:
-            free_phi = (ref_phi - offset_phi)*DEGREE
+            free_phi = (ref_phi - k.offset_phi)*DEGREE
             part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)
-            direction_x_phi = cos(part_of_direction_y_phi)  # its reference where it is free
+            direction_x_phi = cos(part_of_direction_y_phi)
             direction_y_phi = sin(part_of_direction_y_phi)
             return (direction_x_phi, direction_y_phi)
 
-        direction_x_phi = z  # its reference where it is free
-        direction_y_phi = radius_theta
+        # its reference where it is free
         direction_x_phi, direction_y_phi = elsewhere(
-            radius_phi > machine_scale_times_free_angle,
-            (direction_x_phi, direction_y_phi),
+            radius_phi > k.machine_scale_times_free_angle,
+            (z, radius_theta),
             elsewhere_direction_x_phi,
             (ref_phi,),
         )
-        axis_phi = offset_phi + atan2(direction_y_phi, direction_x_phi)/DEGREE
+        axis_phi = k.offset_phi + atan2(direction_y_phi, direction_x_phi)/DEGREE
         return (axis_r, axis_theta, axis_phi), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_r, axis_theta, axis_phi = axes
         k = self.constants
-        highest_phi = k.highest_phi
-        highest_r = k.highest_r
-        highest_theta = k.highest_theta
-        lowest_phi = k.lowest_phi
-        lowest_r = k.lowest_r
-        lowest_theta = k.lowest_theta
         status = passed(axes)
         # limits of Theta
-        require(status, (axis_theta >= lowest_theta) & (axis_theta <= highest_theta), Status.UNREACHABLE)
+        require(status, (axis_theta >= k.lowest_theta) & (axis_theta <= k.highest_theta), Status.UNREACHABLE)
         # limits of R
-        require(status, (axis_r >= lowest_r) & (axis_r <= highest_r), Status.UNREACHABLE)
+        require(status, (axis_r >= k.lowest_r) & (axis_r <= k.highest_r), Status.UNREACHABLE)
         # limits of Phi
-        require(status, (axis_phi >= lowest_phi) & (axis_phi <= highest_phi), Status.UNREACHABLE)
+        require(status, (axis_phi >= k.lowest_phi) & (axis_phi <= k.highest_phi), Status.UNREACHABLE)
         return status

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Codes, Programs, Reals, Rotation, Signs, Turns, Vector, absolute, passed, require
+from softkin._array import Programs, absolute, passed, require
 from softkin._types import Status
 
 if TYPE_CHECKING:
+    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
     from softkin.gantry2 import Constants
 
 
@@ -23,13 +24,11 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_x, axis_y = axes
         k = self.constants
-        offset_x = k.offset_x
-        offset_y = k.offset_y
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9), Status.BAD_INPUT)
-        joint_x = axis_x - offset_x
-        joint_y = axis_y - offset_y
+        joint_x = axis_x - k.offset_x
+        joint_y = axis_y - k.offset_y
         return ((joint_x, joint_y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
@@ -38,29 +37,22 @@ class ArrayPrograms(Programs):
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        machine_scale_times_plane = k.machine_scale_times_plane
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        status = passed(position)
+        status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
-        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        axis_x = offset_x + x
-        axis_y = offset_y + y
+        require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
+        axis_x = k.offset_x + x
+        axis_y = k.offset_y + y
         return (axis_x, axis_y), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_x, axis_y = axes
         k = self.constants
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
         status = passed(axes)
         # limits of X
-        require(status, (axis_x >= lowest_x) & (axis_x <= highest_x), Status.UNREACHABLE)
+        require(status, (axis_x >= k.lowest_x) & (axis_x <= k.highest_x), Status.UNREACHABLE)
         # limits of Y
-        require(status, (axis_y >= lowest_y) & (axis_y <= highest_y), Status.UNREACHABLE)
+        require(status, (axis_y >= k.lowest_y) & (axis_y <= k.highest_y), Status.UNREACHABLE)
         return status

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Codes, Programs, Reals, Rotation, Signs, Turns, Vector, absolute, passed, require
+from softkin._array import Programs, absolute, passed, require
 from softkin._types import Status
 
 if TYPE_CHECKING:
+    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
     from softkin.gantry3 import Constants
 
 
@@ -23,9 +24,6 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_x, axis_y, axis_z = axes
         k = self.constants
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -33,9 +31,9 @@ class ArrayPrograms(Programs):
             (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9) & (absolute(axis_z) <= 1e9),
             Status.BAD_INPUT,
         )
-        joint_x = axis_x - offset_x
-        joint_y = axis_y - offset_y
-        joint_z = axis_z - offset_z
+        joint_x = axis_x - k.offset_x
+        joint_y = axis_y - k.offset_y
+        joint_z = axis_z - k.offset_z
         return ((joint_x, joint_y, joint_z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
@@ -44,32 +42,23 @@ class ArrayPrograms(Programs):
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
-        status = passed(position)
+        status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        axis_x = offset_x + x
-        axis_y = offset_y + y
-        axis_z = offset_z + z
+        axis_x = k.offset_x + x
+        axis_y = k.offset_y + y
+        axis_z = k.offset_z + z
         return (axis_x, axis_y, axis_z), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_x, axis_y, axis_z = axes
         k = self.constants
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        highest_z = k.highest_z
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        lowest_z = k.lowest_z
         status = passed(axes)
         # limits of X
-        require(status, (axis_x >= lowest_x) & (axis_x <= highest_x), Status.UNREACHABLE)
+        require(status, (axis_x >= k.lowest_x) & (axis_x <= k.highest_x), Status.UNREACHABLE)
         # limits of Y
-        require(status, (axis_y >= lowest_y) & (axis_y <= highest_y), Status.UNREACHABLE)
+        require(status, (axis_y >= k.lowest_y) & (axis_y <= k.highest_y), Status.UNREACHABLE)
         # limits of Z
-        require(status, (axis_z >= lowest_z) & (axis_z <= highest_z), Status.UNREACHABLE)
+        require(status, (axis_z >= k.lowest_z) & (axis_z <= k.highest_z), Status.UNREACHABLE)
         return status

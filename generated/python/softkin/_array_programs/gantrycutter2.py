@@ -7,13 +7,7 @@ from typing import TYPE_CHECKING
 
 from softkin._array import (
     DEGREE,
-    Codes,
     Programs,
-    Reals,
-    Rotation,
-    Signs,
-    Turns,
-    Vector,
     absolute,
     cos,
     degrees,
@@ -27,6 +21,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
+    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
     from softkin.gantrycutter2 import Constants
 
 
@@ -41,10 +36,6 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_x, axis_y, axis_r = axes
         k = self.constants
-        direction_r = k.direction_r
-        offset_r = k.offset_r
-        offset_x = k.offset_x
-        offset_y = k.offset_y
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -52,12 +43,12 @@ class ArrayPrograms(Programs):
             (absolute(axis_r) <= 1e9) & (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9),
             Status.BAD_INPUT,
         )
-        joint_x = axis_x - offset_x
-        joint_y = axis_y - offset_y
-        r = DEGREE*(axis_r - offset_r)
+        joint_x = axis_x - k.offset_x
+        joint_y = axis_y - k.offset_y
+        r = DEGREE*(axis_r - k.offset_r)
         cos_r = cos(r)
         sin_r = sin(r)
-        direction_r_times_sin_r = direction_r*sin_r
+        direction_r_times_sin_r = k.direction_r*sin_r
         return (
             (
                 (joint_x, joint_y, 0.0),
@@ -76,14 +67,7 @@ class ArrayPrograms(Programs):
         (turn_r,) = turns
         _, _, ref_r = reference
         k = self.constants
-        direction_r = k.direction_r
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_r = k.mid_r
-        offset_r = k.offset_r
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        single_r = k.single_r
-        status = passed(position)
+        status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
         require(
             status,
@@ -93,33 +77,27 @@ class ArrayPrograms(Programs):
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        axis_x = k.offset_x + x
+        axis_y = k.offset_y + y
+        direction_y_r = k.direction_r*heading_across
+        open_r = select(k.single_r, k.mid_r, ref_r)  # R: where its turn is open
+        near_r = select(turn_r != 0, 360.0*select(turn_r > 0, turn_r - 1, turn_r), open_r)
+        axis_r = nearest_period(k.offset_r + degrees(direction_y_r, heading_along), near_r)  # R: its turn
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # z: a planar machine has none
-        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        axis_x = offset_x + x
-        axis_y = offset_y + y
-        direction_y_r = direction_r*heading_across
-        open_r = select(single_r, mid_r, ref_r)  # R: where its turn is open
-        near_r = select(turn_r != 0, 360.0*select(turn_r > 0, turn_r - 1, turn_r), open_r)
-        axis_r = nearest_period(offset_r + degrees(direction_y_r, heading_along), near_r)  # R: its turn
+        require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         return (axis_x, axis_y, axis_r), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_x, axis_y, axis_r = axes
         k = self.constants
-        highest_r = k.highest_r
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        lowest_r = k.lowest_r
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
         status = passed(axes)
         # limits of R
-        require(status, (axis_r >= lowest_r) & (axis_r <= highest_r), Status.UNREACHABLE)
+        require(status, (axis_r >= k.lowest_r) & (axis_r <= k.highest_r), Status.UNREACHABLE)
         # limits of X
-        require(status, (axis_x >= lowest_x) & (axis_x <= highest_x), Status.UNREACHABLE)
+        require(status, (axis_x >= k.lowest_x) & (axis_x <= k.highest_x), Status.UNREACHABLE)
         # limits of Y
-        require(status, (axis_y >= lowest_y) & (axis_y <= highest_y), Status.UNREACHABLE)
+        require(status, (axis_y >= k.lowest_y) & (axis_y <= k.highest_y), Status.UNREACHABLE)
         return status

@@ -7,13 +7,7 @@ from typing import TYPE_CHECKING
 
 from softkin._array import (
     DEGREE,
-    Codes,
     Programs,
-    Reals,
-    Rotation,
-    Signs,
-    Turns,
-    Vector,
     absolute,
     cos,
     degrees,
@@ -27,6 +21,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
+    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
     from softkin.gantrycutter3 import Constants
 
 
@@ -41,11 +36,6 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_x, axis_y, axis_z, axis_r = axes
         k = self.constants
-        direction_r = k.direction_r
-        offset_r = k.offset_r
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -56,13 +46,13 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        joint_x = axis_x - offset_x
-        joint_y = axis_y - offset_y
-        joint_z = axis_z - offset_z
-        r = DEGREE*(axis_r - offset_r)
+        joint_x = axis_x - k.offset_x
+        joint_y = axis_y - k.offset_y
+        joint_z = axis_z - k.offset_z
+        r = DEGREE*(axis_r - k.offset_r)
         cos_r = cos(r)
         sin_r = sin(r)
-        direction_r_times_sin_r = direction_r*sin_r
+        direction_r_times_sin_r = k.direction_r*sin_r
         return (
             (
                 (joint_x, joint_y, joint_z),
@@ -81,14 +71,7 @@ class ArrayPrograms(Programs):
         (turn_r,) = turns
         _, _, _, ref_r = reference
         k = self.constants
-        direction_r = k.direction_r
-        mid_r = k.mid_r
-        offset_r = k.offset_r
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
-        single_r = k.single_r
-        status = passed(position)
+        status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
         require(
             status,
@@ -98,36 +81,28 @@ class ArrayPrograms(Programs):
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        axis_x = k.offset_x + x
+        axis_y = k.offset_y + y
+        axis_z = k.offset_z + z
+        direction_y_r = k.direction_r*heading_across
+        open_r = select(k.single_r, k.mid_r, ref_r)  # R: where its turn is open
+        near_r = select(turn_r != 0, 360.0*select(turn_r > 0, turn_r - 1, turn_r), open_r)
+        axis_r = nearest_period(k.offset_r + degrees(direction_y_r, heading_along), near_r)  # R: its turn
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        axis_x = offset_x + x
-        axis_y = offset_y + y
-        axis_z = offset_z + z
-        direction_y_r = direction_r*heading_across
-        open_r = select(single_r, mid_r, ref_r)  # R: where its turn is open
-        near_r = select(turn_r != 0, 360.0*select(turn_r > 0, turn_r - 1, turn_r), open_r)
-        axis_r = nearest_period(offset_r + degrees(direction_y_r, heading_along), near_r)  # R: its turn
         return (axis_x, axis_y, axis_z, axis_r), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_x, axis_y, axis_z, axis_r = axes
         k = self.constants
-        highest_r = k.highest_r
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        highest_z = k.highest_z
-        lowest_r = k.lowest_r
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        lowest_z = k.lowest_z
         status = passed(axes)
         # limits of R
-        require(status, (axis_r >= lowest_r) & (axis_r <= highest_r), Status.UNREACHABLE)
+        require(status, (axis_r >= k.lowest_r) & (axis_r <= k.highest_r), Status.UNREACHABLE)
         # limits of X
-        require(status, (axis_x >= lowest_x) & (axis_x <= highest_x), Status.UNREACHABLE)
+        require(status, (axis_x >= k.lowest_x) & (axis_x <= k.highest_x), Status.UNREACHABLE)
         # limits of Y
-        require(status, (axis_y >= lowest_y) & (axis_y <= highest_y), Status.UNREACHABLE)
+        require(status, (axis_y >= k.lowest_y) & (axis_y <= k.highest_y), Status.UNREACHABLE)
         # limits of Z
-        require(status, (axis_z >= lowest_z) & (axis_z <= highest_z), Status.UNREACHABLE)
+        require(status, (axis_z >= k.lowest_z) & (axis_z <= k.highest_z), Status.UNREACHABLE)
         return status

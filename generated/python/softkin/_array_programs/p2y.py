@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Codes, Programs, Reals, Rotation, Signs, Turns, Vector, absolute, passed, require
+from softkin._array import Programs, absolute, passed, require
 from softkin._types import Status
 
 if TYPE_CHECKING:
+    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
     from softkin.p2y import Constants
 
 
@@ -23,13 +24,11 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
-        a1 = axis_a1 - offset_a1
-        a2 = axis_a2 - offset_a2
+        a1 = axis_a1 - k.offset_a1
+        a2 = axis_a2 - k.offset_a2
         x = 0.5*(a1 - a2)
         y = 0.5*(a1 + a2)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
@@ -40,45 +39,32 @@ class ArrayPrograms(Programs):
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        machine_scale_times_plane = k.machine_scale_times_plane
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        status = passed(position)
+        status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
-        require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
+        require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         a1 = x + y  # a1, a2: affine in the x and y equations
-        axis_a1 = a1 + offset_a1
+        axis_a1 = a1 + k.offset_a1
         a2 = y - x
-        axis_a2 = a2 + offset_a2
+        axis_a2 = a2 + k.offset_a2
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
         status = passed(axes)
         # limits of A1
-        require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
+        require(status, (axis_a1 >= k.lowest_a1) & (axis_a1 <= k.highest_a1), Status.UNREACHABLE)
         # limits of A2
-        require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
-        a1 = axis_a1 - offset_a1
-        a2 = axis_a2 - offset_a2
+        require(status, (axis_a2 >= k.lowest_a2) & (axis_a2 <= k.highest_a2), Status.UNREACHABLE)
+        a1 = axis_a1 - k.offset_a1
+        a2 = axis_a2 - k.offset_a2
         value_x = 0.5*(a1 - a2)  # X of the carriage
-        # limits of X of the carriage
-        require(status, (value_x >= lowest_x) & (value_x <= highest_x), Status.UNREACHABLE)
         value_y = 0.5*(a1 + a2)  # Y of the carriage
+        # limits of X of the carriage
+        require(status, (value_x >= k.lowest_x) & (value_x <= k.highest_x), Status.UNREACHABLE)
         # limits of Y of the carriage
-        require(status, (value_y >= lowest_y) & (value_y <= highest_y), Status.UNREACHABLE)
+        require(status, (value_y >= k.lowest_y) & (value_y <= k.highest_y), Status.UNREACHABLE)
         return status

@@ -7,14 +7,7 @@ from typing import TYPE_CHECKING
 
 from softkin._array import (
     DEGREE,
-    Codes,
     Programs,
-    Real,
-    Reals,
-    Rotation,
-    Signs,
-    Turns,
-    Vector,
     absolute,
     cos,
     degrees,
@@ -29,6 +22,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
+    from softkin._array import Codes, Real, Reals, Rotation, Signs, Turns, Vector
     from softkin.polar_z import Constants
 
 
@@ -43,9 +37,6 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_c, axis_r, axis_z = axes
         k = self.constants
-        offset_c = k.offset_c
-        offset_r = k.offset_r
-        offset_z = k.offset_z
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -53,15 +44,15 @@ class ArrayPrograms(Programs):
             (absolute(axis_c) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_z) <= 1e9),
             Status.BAD_INPUT,
         )
-        r = axis_r - offset_r
-        # R where the machine has no pose
-        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
-        c = DEGREE*(axis_c - offset_c)
+        r = axis_r - k.offset_r
+        c = DEGREE*(axis_c - k.offset_c)
         cos_c = cos(c)
         x = r*cos_c
         sin_c = sin(c)
         y = r*sin_c
-        joint_z = axis_z - offset_z
+        joint_z = axis_z - k.offset_z
+        # R where the machine has no pose
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
         return ((x, y, joint_z), ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
@@ -72,13 +63,7 @@ class ArrayPrograms(Programs):
         (turn_c,) = turns
         ref_c, _, _ = reference
         k = self.constants
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_c = k.mid_c
-        offset_c = k.offset_c
-        offset_r = k.offset_r
-        offset_z = k.offset_z
-        single_c = k.single_c
-        status = passed(position)
+        status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
         require(
             status,
@@ -88,41 +73,34 @@ class ArrayPrograms(Programs):
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
-            free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)  # its reference where it is free
+            free_c = (ref_c - k.offset_c)*DEGREE
+            direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
             return (direction_x_c, direction_y_c)
 
-        direction_x_c = x  # its reference where it is free
-        direction_y_c = y
+        # its reference where it is free
         direction_x_c, direction_y_c = elsewhere(
-            radius_c > machine_scale_times_free_angle,
-            (direction_x_c, direction_y_c),
+            radius_c > k.machine_scale_times_free_angle,
+            (x, y),
             elsewhere_direction_x_c,
             (ref_c,),
         )
-        open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
+        open_c = select(k.single_c, k.mid_c, ref_c)  # C: where its turn is open
         near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
-        axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
-        axis_r = offset_r + radius_c
-        axis_z = offset_z + z
+        axis_c = nearest_period(k.offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
+        axis_r = k.offset_r + radius_c
+        axis_z = k.offset_z + z
         return (axis_c, axis_r, axis_z), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_c, axis_r, axis_z = axes
         k = self.constants
-        highest_c = k.highest_c
-        highest_r = k.highest_r
-        highest_z = k.highest_z
-        lowest_c = k.lowest_c
-        lowest_r = k.lowest_r
-        lowest_z = k.lowest_z
         status = passed(axes)
         # limits of C
-        require(status, (axis_c >= lowest_c) & (axis_c <= highest_c), Status.UNREACHABLE)
+        require(status, (axis_c >= k.lowest_c) & (axis_c <= k.highest_c), Status.UNREACHABLE)
         # limits of R
-        require(status, (axis_r >= lowest_r) & (axis_r <= highest_r), Status.UNREACHABLE)
+        require(status, (axis_r >= k.lowest_r) & (axis_r <= k.highest_r), Status.UNREACHABLE)
         # limits of Z
-        require(status, (axis_z >= lowest_z) & (axis_z <= highest_z), Status.UNREACHABLE)
+        require(status, (axis_z >= k.lowest_z) & (axis_z <= k.highest_z), Status.UNREACHABLE)
         return status

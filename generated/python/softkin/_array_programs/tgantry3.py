@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Codes, Programs, Reals, Rotation, Signs, Turns, Vector, absolute, passed, require
+from softkin._array import Programs, absolute, passed, require
 from softkin._types import Status
 
 if TYPE_CHECKING:
+    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
     from softkin.tgantry3 import Constants
 
 
@@ -23,9 +24,6 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a, axis_b, axis_z = axes
         k = self.constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_z = k.offset_z
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -33,11 +31,11 @@ class ArrayPrograms(Programs):
             (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_z) <= 1e9),
             Status.BAD_INPUT,
         )
-        a = axis_a - offset_a
-        b = axis_b - offset_b
+        a = axis_a - k.offset_a
+        b = axis_b - k.offset_b
         x = 0.5*(a + b)
         y = 0.5*(b - a)
-        joint_z = axis_z - offset_z
+        joint_z = axis_z - k.offset_z
         return ((x, y, joint_z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
@@ -46,48 +44,33 @@ class ArrayPrograms(Programs):
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_z = k.offset_z
-        status = passed(position)
+        status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         a = x - y  # a, b: affine in the x and y equations
-        axis_a = a + offset_a
+        axis_a = a + k.offset_a
         b = x + y
-        axis_b = b + offset_b
-        axis_z = offset_z + z
+        axis_b = b + k.offset_b
+        axis_z = k.offset_z + z
         return (axis_a, axis_b, axis_z), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_a, axis_b, axis_z = axes
         k = self.constants
-        highest_a = k.highest_a
-        highest_b = k.highest_b
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        highest_z = k.highest_z
-        lowest_a = k.lowest_a
-        lowest_b = k.lowest_b
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        lowest_z = k.lowest_z
-        offset_a = k.offset_a
-        offset_b = k.offset_b
         status = passed(axes)
         # limits of A
-        require(status, (axis_a >= lowest_a) & (axis_a <= highest_a), Status.UNREACHABLE)
+        require(status, (axis_a >= k.lowest_a) & (axis_a <= k.highest_a), Status.UNREACHABLE)
         # limits of B
-        require(status, (axis_b >= lowest_b) & (axis_b <= highest_b), Status.UNREACHABLE)
+        require(status, (axis_b >= k.lowest_b) & (axis_b <= k.highest_b), Status.UNREACHABLE)
         # limits of Z
-        require(status, (axis_z >= lowest_z) & (axis_z <= highest_z), Status.UNREACHABLE)
-        a = axis_a - offset_a
-        b = axis_b - offset_b
+        require(status, (axis_z >= k.lowest_z) & (axis_z <= k.highest_z), Status.UNREACHABLE)
+        a = axis_a - k.offset_a
+        b = axis_b - k.offset_b
         value_x = 0.5*(a + b)  # X of the carriage
-        # limits of X of the carriage
-        require(status, (value_x >= lowest_x) & (value_x <= highest_x), Status.UNREACHABLE)
         value_y = 0.5*(b - a)  # Y of the carriage
+        # limits of X of the carriage
+        require(status, (value_x >= k.lowest_x) & (value_x <= k.highest_x), Status.UNREACHABLE)
         # limits of Y of the carriage
-        require(status, (value_y >= lowest_y) & (value_y <= highest_y), Status.UNREACHABLE)
+        require(status, (value_y >= k.lowest_y) & (value_y <= k.highest_y), Status.UNREACHABLE)
         return status

@@ -3,27 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from softkin._array import (
-    Codes,
-    Programs,
-    Reals,
-    Rotation,
-    Signs,
-    Turns,
-    Vector,
-    absolute,
-    passed,
-    refused,
-    require,
-    root,
-    select,
-)
+from softkin._array import Programs, absolute, passed, require, root, select
 from softkin._types import Status
 
 if TYPE_CHECKING:
+    from softkin._array import Codes, Reals, Rotation, Signs, Turns, Vector
     from softkin.tripod_p3z import Constants
 
 
@@ -38,28 +24,6 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        apart_2_x = k.apart_2_x
-        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
-        apart_2_y = k.apart_2_y
-        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
-        apart_3_x = k.apart_3_x
-        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
-        apart_3_y = k.apart_3_y
-        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        normal_z = k.normal_z
-        normal_z_squared = k.normal_z_squared
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        one_by_arm_length = k.one_by_arm_length
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
-        pivot_1_x = k.pivot_1_x
-        pivot_1_y = k.pivot_1_y
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -67,49 +31,55 @@ class ArrayPrograms(Programs):
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
             Status.BAD_INPUT,
         )
-        a1 = axis_a1 - offset_a1
-        a2 = axis_a2 - offset_a2
+        a1 = axis_a1 - k.offset_a1
+        a2 = axis_a2 - k.offset_a2
         apart_2_z = a2 - a1
-        a3 = axis_a3 - offset_a3
+        a3 = axis_a3 - k.offset_a3
         apart_3_z = a3 - a1
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
-        # the centres coincide or lie on a line: nothing holds the plate
-        require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
-        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
-        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
-        normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
+        normal_x = k.apart_2_y*apart_3_z - apart_2_z*k.apart_3_y
+        normal_y = apart_2_z*k.apart_3_x - k.apart_2_x*apart_3_z
+        normal_square = k.normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
+        share_2 = k.part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
+        share_3 = k.part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
         one_by_normal_square = 1.0/normal_divisor
         foot_x = (
             one_by_normal_square
             *(
-                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
-                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+                (k.apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
+                + (apart_2_z*normal_y - k.apart_2_y_times_normal_z)*share_3
             )
         )
         foot_y = (
             one_by_normal_square
             *(
-                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
-                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+                (apart_3_z*normal_x - k.apart_3_x_times_normal_z)*share_2
+                + (k.apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
             )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (k.apart_3_x*normal_y - k.apart_3_y*normal_x)*share_2
+                + (k.apart_2_y*normal_x - k.apart_2_x*normal_y)*share_3
+            )
         )
         # the square of the height over the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = k.arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        rise = root(height_square*one_by_normal_square)*k.assembly_sign
+        x = foot_x + k.pivot_1_x + normal_x*rise
+        y = foot_y + k.pivot_1_y + normal_y*rise
+        z = a1 + foot_z + k.normal_z*rise
+        branch_carriage_1 = (a1 - z)*k.one_by_arm_length
+        branch_carriage_2 = (a2 - z)*k.one_by_arm_length
+        branch_carriage_3 = (a3 - z)*k.one_by_arm_length
+        # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
-        require(status, height_square >= -arm_length_squared_times_rounding, Status.IMPOSSIBLE)
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + pivot_1_y + normal_y*rise
-        z = a1 + foot_z + normal_z*rise
-        branch_carriage_1 = (a1 - z)*one_by_arm_length
-        branch_carriage_2 = (a2 - z)*one_by_arm_length
-        branch_carriage_3 = (a3 - z)*one_by_arm_length
+        require(
+            status,
+            ((normal_square > k.part_of_normal_divisor) & (height_square >= -k.arm_length_squared_times_rounding)),
+            Status.IMPOSSIBLE,
+        )
         return (
             (
                 (x, y, z),
@@ -126,56 +96,31 @@ class ArrayPrograms(Programs):
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self.constants
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_span_1_x = k.part_of_span_1_x
-        part_of_span_1_y = k.part_of_span_1_y
-        part_of_span_2_x = k.part_of_span_2_x
-        part_of_span_2_y = k.part_of_span_2_y
-        part_of_span_3_x = k.part_of_span_3_x
-        part_of_span_3_y = k.part_of_span_3_y
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
-        pivot_1_x = k.pivot_1_x
-        pivot_1_y = k.pivot_1_y
-        pivot_2_x = k.pivot_2_x
-        pivot_2_y = k.pivot_2_y
-        pivot_3_x = k.pivot_3_x
-        pivot_3_y = k.pivot_3_y
-        status = passed(position)
+        status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        span_1_x = x - part_of_span_1_x  # rod 1
-        span_1_y = y - part_of_span_1_y  # rod 1
+        span_1_x = x - k.part_of_span_1_x  # rod 1
+        span_1_y = y - k.part_of_span_1_y  # rod 1
         # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
-        # rod 1 cannot reach
-        require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
-        span_2_x = x - part_of_span_2_x  # rod 2
-        span_2_y = y - part_of_span_2_y  # rod 2
+        root_square_a1 = k.arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
+        span_2_x = x - k.part_of_span_2_x  # rod 2
+        span_2_y = y - k.part_of_span_2_y  # rod 2
         # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
-        # rod 2 cannot reach
-        require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
-        span_3_x = x - part_of_span_3_x  # rod 3
-        span_3_y = y - part_of_span_3_y  # rod 3
+        root_square_a2 = k.arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
+        span_3_x = x - k.part_of_span_3_x  # rod 3
+        span_3_y = y - k.part_of_span_3_y  # rod 3
         # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
-        # rod 3 cannot reach
-        require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
-        rod_1_x = x - pivot_1_x
-        rod_1_y = y - pivot_1_y
+        root_square_a3 = k.arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
+        rod_1_x = x - k.pivot_1_x
+        rod_1_y = y - k.pivot_1_y
         a1 = z + root(root_square_a1)*sigma_carriage_1
         rod_1_z = z - a1
-        rod_2_x = x - pivot_2_x
-        rod_2_y = y - pivot_2_y
+        rod_2_x = x - k.pivot_2_x
+        rod_2_y = y - k.pivot_2_y
         a2 = z + root(root_square_a2)*sigma_carriage_2
         rod_2_z = z - a2
-        rod_3_x = x - pivot_3_x
-        rod_3_y = y - pivot_3_y
+        rod_3_x = x - k.pivot_3_x
+        rod_3_y = y - k.pivot_3_y
         a3 = z + root(root_square_a3)*sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
@@ -183,199 +128,30 @@ class ArrayPrograms(Programs):
                 (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z - rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y)
                 - (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
             )
-            *part_of_type2_rods_coplanar
+            *k.part_of_type2_rods_coplanar
         )
+        axis_a1 = a1 + k.offset_a1
+        axis_a2 = a2 + k.offset_a2
+        axis_a3 = a3 + k.offset_a3
+        # rod 1 cannot reach
+        require(status, root_square_a1 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
+        # rod 2 cannot reach
+        require(status, root_square_a2 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
+        # rod 3 cannot reach
+        require(status, root_square_a3 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        require(status, type2_rods_coplanar >= min_type2_margin, Status.UNREACHABLE)
-        axis_a1 = a1 + offset_a1
-        axis_a2 = a2 + offset_a2
-        axis_a3 = a3 + offset_a3
+        require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
         status = passed(axes)
         # limits of A1
-        require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
+        require(status, (axis_a1 >= k.lowest_a1) & (axis_a1 <= k.highest_a1), Status.UNREACHABLE)
         # limits of A2
-        require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
+        require(status, (axis_a2 >= k.lowest_a2) & (axis_a2 <= k.highest_a2), Status.UNREACHABLE)
         # limits of A3
-        require(status, (axis_a3 >= lowest_a3) & (axis_a3 <= highest_a3), Status.UNREACHABLE)
+        require(status, (axis_a3 >= k.lowest_a3) & (axis_a3 <= k.highest_a3), Status.UNREACHABLE)
         return status
-
-    def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
-    ) -> tuple[tuple[Reals, Codes], ...]:
-        """Every slot: its axes and statuses."""
-        x, y, z = position
-        k = self.constants
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_span_1_x = k.part_of_span_1_x
-        part_of_span_1_y = k.part_of_span_1_y
-        part_of_span_2_x = k.part_of_span_2_x
-        part_of_span_2_y = k.part_of_span_2_y
-        part_of_span_3_x = k.part_of_span_3_x
-        part_of_span_3_y = k.part_of_span_3_y
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
-        pivot_1_x = k.pivot_1_x
-        pivot_1_y = k.pivot_1_y
-        pivot_2_x = k.pivot_2_x
-        pivot_2_y = k.pivot_2_y
-        pivot_3_x = k.pivot_3_x
-        pivot_3_y = k.pivot_3_y
-        status = passed(position)
-        # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        span_1_x = x - part_of_span_1_x  # rod 1
-        span_1_y = y - part_of_span_1_y  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
-        # rod 1 cannot reach
-        require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
-        span_2_x = x - part_of_span_2_x  # rod 2
-        span_2_y = y - part_of_span_2_y  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
-        # rod 2 cannot reach
-        require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
-        span_3_x = x - part_of_span_3_x  # rod 3
-        span_3_y = y - part_of_span_3_y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
-        # rod 3 cannot reach
-        require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
-        rod_1_x = x - pivot_1_x
-        rod_1_y = y - pivot_1_y
-        a1_above = z + root(root_square_a1)
-        rod_1_z_above = z - a1_above
-        rod_2_x = x - pivot_2_x
-        rod_2_y = y - pivot_2_y
-        a2_above = z + root(root_square_a2)
-        rod_2_z_above = z - a2_above
-        rod_3_x = x - pivot_3_x
-        rod_3_y = y - pivot_3_y
-        a3_above = z + root(root_square_a3)
-        rod_3_z_above = z - a3_above
-        type2_rods_coplanar_above_above_above = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
-            )
-            *part_of_type2_rods_coplanar
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_above = select(type2_rods_coplanar_above_above_above >= min_type2_margin, 0, 3)
-        axis_a1_above = a1_above + offset_a1
-        axis_a2_above = a2_above + offset_a2
-        axis_a3_above = a3_above + offset_a3
-        a3_below = z - root(root_square_a3)
-        rod_3_z_below = z - a3_below
-        type2_rods_coplanar_above_above_below = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
-            )
-            *part_of_type2_rods_coplanar
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0, 3)
-        axis_a3_below = a3_below + offset_a3
-        a2_below = z - root(root_square_a2)
-        rod_2_z_below = z - a2_below
-        type2_rods_coplanar_above_below_above = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
-            )
-            *part_of_type2_rods_coplanar
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0, 3)
-        axis_a2_below = a2_below + offset_a2
-        type2_rods_coplanar_above_below_below = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
-            )
-            *part_of_type2_rods_coplanar
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0, 3)
-        a1_below = z - root(root_square_a1)
-        rod_1_z_below = z - a1_below
-        type2_rods_coplanar_below_above_above = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
-            )
-            *part_of_type2_rods_coplanar
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0, 3)
-        axis_a1_below = a1_below + offset_a1
-        type2_rods_coplanar_below_above_below = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
-            )
-            *part_of_type2_rods_coplanar
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0, 3)
-        type2_rods_coplanar_below_below_above = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
-            )
-            *part_of_type2_rods_coplanar
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0, 3)
-        type2_rods_coplanar_below_below_below = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
-            )
-            *part_of_type2_rods_coplanar
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_below = select(type2_rods_coplanar_below_below_below >= min_type2_margin, 0, 3)
-        status_above_above_above = refused(status, refusal_above_above_above)
-        status_below_above_above = refused(status, refusal_below_above_above)
-        status_above_below_above = refused(status, refusal_above_below_above)
-        status_below_below_above = refused(status, refusal_below_below_above)
-        status_above_above_below = refused(status, refusal_above_above_below)
-        status_below_above_below = refused(status, refusal_below_above_below)
-        status_above_below_below = refused(status, refusal_above_below_below)
-        status_below_below_below = refused(status, refusal_below_below_below)
-        return (
-            ((axis_a1_above, axis_a2_above, axis_a3_above), status_above_above_above),
-            ((axis_a1_below, axis_a2_above, axis_a3_above), status_below_above_above),
-            ((axis_a1_above, axis_a2_below, axis_a3_above), status_above_below_above),
-            ((axis_a1_below, axis_a2_below, axis_a3_above), status_below_below_above),
-            ((axis_a1_above, axis_a2_above, axis_a3_below), status_above_above_below),
-            ((axis_a1_below, axis_a2_above, axis_a3_below), status_below_above_below),
-            ((axis_a1_above, axis_a2_below, axis_a3_below), status_above_below_below),
-            ((axis_a1_below, axis_a2_below, axis_a3_below), status_below_below_below),
-        )

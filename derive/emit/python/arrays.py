@@ -1,0 +1,93 @@
+"""A program as the body of a Python method on arrays: every statement for all rows at once, refusals as masks."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+
+import sympy as sp
+
+from derive.emit.python import calls
+from derive.emit.python.control_flow import array_arm_lines, fixed
+from derive.emit.python.layout import fold
+from derive.emit.python.loops import array_end, array_head
+from derive.emit.python.printer import ArrayPrinter
+from derive.emit.python.program import (
+    Method,
+    binding_lines,
+    constants_of,
+    grouped,
+    note_lines,
+    step_lines,
+    unpacked,
+    values_of,
+    without_conversions,
+)
+from derive.ir.primitives import NearestPeriod
+from derive.ir.program import (
+    Call,
+    FindRoot,
+    Iterate,
+    Let,
+    Require,
+    Solve,
+    Statement,
+    reads,
+)
+from derive.optimize.control_flow import Arms, Item, in_arms
+
+
+def array_body(method: Method) -> list[str]:
+    """The body on arrays: every statement for all rows, a row's status is its first condition that does not hold."""
+    constants = constants_of(method)
+    lines = _statements(method, constants)
+    values = values_of(method, ArrayPrinter(constants))
+    if method.is_shared:
+        return [*lines, *fold(f"return {values}")]
+    return [*lines, *fold(f"return {values}, status" if values else "return status")]
+
+
+def _statements(method: Method, constants: Collection[str]) -> list[str]:
+    printer, turns = ArrayPrinter(constants), ArrayPrinter(constants, modulo_turns=True)
+    lines = [*unpacked(method), *(["k = self.constants"] if constants else [])]
+    if not method.is_shared:
+        lines.append(f"status = passed({', '.join(a.name for a in method.arguments)})")
+    program = without_conversions(method.program)
+    alike = fixed(program.body, {s for statement in program.body for s in reads(statement) if s.name in constants})
+
+    def bound(item: Item) -> list[str]:
+        if isinstance(item, Arms):
+            return array_arm_lines(item, alike, bound, printer)
+        assert isinstance(item, Let | Solve)
+        return binding_lines(item, turns if isinstance(item, Let) and isinstance(item.value, NearestPeriod) else printer)
+
+    for item, same in grouped(in_arms(_refused_late(program.body), [o.value for o in program.outputs])):
+        if isinstance(item, Iterate):
+            lines += [*array_head(item, printer), *step_lines(item, printer), *array_end(item, printer)]
+        elif isinstance(item, Call):
+            lines += calls.array_lines(item, printer)
+        elif isinstance(item, FindRoot):
+            lines += calls.array_search(item, printer)
+        elif isinstance(item, Require):
+            condition = sp.And(*(r.condition for r in same))
+            notes = [line for note in dict.fromkeys(r.comment for r in same) for line in note_lines(note)]
+            lines += [*notes, *fold(f"require(status, {printer.print(condition)}, Status.{item.otherwise.name})")]
+        else:
+            lines += bound(item)
+    return lines
+
+
+def _refused_late(body: Iterable[Statement]) -> list[Statement]:
+    """The statements, conditions behind values: all rows are computed anyhow, and a choice gathers what stands together.
+
+    The first check the inputs, and stay. What iterates, searches or is shared asks which rows are refused before it.
+    """
+    found: list[Statement] = []
+    waiting: list[Statement] = []
+    for statement in body:
+        if isinstance(statement, Require) and not all(isinstance(s, Require) for s in found):
+            waiting.append(statement)
+            continue
+        if isinstance(statement, Iterate | Call | FindRoot):
+            found, waiting = [*found, *waiting], []
+        found.append(statement)
+    return [*found, *waiting]
