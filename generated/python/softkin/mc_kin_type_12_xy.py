@@ -20,9 +20,9 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 30 additions, 35 multiplications, 5 divisions, 2 square roots, 4 sines
-    inverse: 52 additions, 51 multiplications, 16 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 205 additions, 204 multiplications, 64 divisions, 16 square roots, 8 sines
+    forward: 28 additions, 35 multiplications, 5 divisions, 2 square roots, 4 sines
+    inverse: 50 additions, 45 multiplications, 16 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 197 additions, 180 multiplications, 64 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -101,18 +101,18 @@ class Constants(NamedTuple):
     machine_scale_times_plane: float
     link_length_1_times_shortest_link: float
     link_length_5_times_shortest_link: float
-    twice_link_length_1: float
     link_length_1_minus_link_length_2: float
     link_length_1_plus_link_length_2: float
-    twice_link_length_5: float
     link_length_5_minus_link_length_4: float
     link_length_4_plus_link_length_5: float
     part_of_type2_arms_aligned: float
     part_of_margin_arms_aligned: float
     machine_scale_squared_times_free_angle: float
+    twice_link_length_1: float
     part_of_slope_2_by_x: float
     link_length_3_times_2_by_link_length_2: float
     part_of_slope_2_by_a1: float
+    twice_link_length_5: float
 
 
 class KinType12XY(OffsetKinematics):
@@ -340,19 +340,19 @@ class KinType12XY(OffsetKinematics):
         machine_scale_times_plane = 1e-6*machine_scale
         link_length_1_times_shortest_link = 1e-9*link_length_1
         link_length_5_times_shortest_link = 1e-9*link_length_5
-        twice_link_length_1 = 2.0*link_length_1
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        twice_link_length_5 = 2.0*link_length_5
         link_length_5_minus_link_length_4 = link_length_5 - link_length_4
         link_length_4_plus_link_length_5 = link_length_4 + link_length_5
         part_of_type2_arms_aligned = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
         part_of_margin_arms_aligned = link_length_3/(link_length_4*link_length_2*link_length_2)
         machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
+        twice_link_length_1 = 2.0*link_length_1
         link_length_3_by_link_length_2_plus_one = 1.0 + link_length_3_by_link_length_2
         part_of_slope_2_by_x = link_length_1*link_length_3_by_link_length_2_plus_one
         link_length_3_times_2_by_link_length_2 = 2.0*link_length_3/link_length_2
         part_of_slope_2_by_a1 = 2.0*link_length_1*link_length_3_by_link_length_2_plus_one
+        twice_link_length_5 = 2.0*link_length_5
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, link_length_3=link_length_3,
             link_length_4=link_length_4, link_length_5=link_length_5, swap_xy=swap_xy, offset_a1=offset_a1,
@@ -371,18 +371,16 @@ class KinType12XY(OffsetKinematics):
             machine_scale_times_plane=machine_scale_times_plane,
             link_length_1_times_shortest_link=link_length_1_times_shortest_link,
             link_length_5_times_shortest_link=link_length_5_times_shortest_link,
-            twice_link_length_1=twice_link_length_1,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
-            twice_link_length_5=twice_link_length_5,
             link_length_5_minus_link_length_4=link_length_5_minus_link_length_4,
             link_length_4_plus_link_length_5=link_length_4_plus_link_length_5,
             part_of_type2_arms_aligned=part_of_type2_arms_aligned,
             part_of_margin_arms_aligned=part_of_margin_arms_aligned,
             machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
-            part_of_slope_2_by_x=part_of_slope_2_by_x,
+            twice_link_length_1=twice_link_length_1, part_of_slope_2_by_x=part_of_slope_2_by_x,
             link_length_3_times_2_by_link_length_2=link_length_3_times_2_by_link_length_2,
-            part_of_slope_2_by_a1=part_of_slope_2_by_a1,
+            part_of_slope_2_by_a1=part_of_slope_2_by_a1, twice_link_length_5=twice_link_length_5,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -556,8 +554,6 @@ class KinType12XY(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         swap_xy = k.swap_xy
-        twice_link_length_1 = k.twice_link_length_1
-        twice_link_length_5 = k.twice_link_length_5
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -580,8 +576,7 @@ class KinType12XY(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (effective_a1 + link_length_1_minus_link_length_2)*(effective_a1 + link_length_1_plus_link_length_2)
         )
@@ -589,9 +584,11 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a1 = (
             (link_length_1_plus_link_length_2 - effective_a1)*(effective_a1 - link_length_1_minus_link_length_2)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a1 - link_length_1_minus_link_length_2)
                 + 0.5*abs(effective_a1 + link_length_1_minus_link_length_2)
@@ -600,9 +597,7 @@ class KinType12XY(OffsetKinematics):
                 - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
@@ -614,8 +609,7 @@ class KinType12XY(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > link_length_5_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = effective_a2*twice_link_length_5  # a2: law of cosines in the rod rear equation
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (effective_a2 + link_length_4_plus_link_length_5)*(effective_a2 + link_length_5_minus_link_length_4)
         )
@@ -623,9 +617,11 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a2 = (
             (link_length_4_plus_link_length_5 - effective_a2)*(effective_a2 - link_length_5_minus_link_length_4)
         )
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a2 - link_length_4_plus_link_length_5)
                 + 0.5*abs(effective_a2 + link_length_4_plus_link_length_5)
@@ -644,9 +640,7 @@ class KinType12XY(OffsetKinematics):
             centre_1_y = pivot_upper_y
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
         cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
         pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
@@ -956,8 +950,6 @@ class KinType12XY(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         swap_xy = k.swap_xy
-        twice_link_length_1 = k.twice_link_length_1
-        twice_link_length_5 = k.twice_link_length_5
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -982,8 +974,7 @@ class KinType12XY(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (effective_a1 + link_length_1_minus_link_length_2)*(effective_a1 + link_length_1_plus_link_length_2)
         )
@@ -991,9 +982,11 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a1 = (
             (link_length_1_plus_link_length_2 - effective_a1)*(effective_a1 - link_length_1_minus_link_length_2)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a1 - link_length_1_minus_link_length_2)
                 + 0.5*abs(effective_a1 + link_length_1_minus_link_length_2)
@@ -1002,9 +995,7 @@ class KinType12XY(OffsetKinematics):
                 - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
@@ -1016,8 +1007,7 @@ class KinType12XY(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > link_length_5_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = effective_a2*twice_link_length_5  # a2: law of cosines in the rod rear equation
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (effective_a2 + link_length_4_plus_link_length_5)*(effective_a2 + link_length_5_minus_link_length_4)
         )
@@ -1025,9 +1015,11 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a2 = (
             (link_length_4_plus_link_length_5 - effective_a2)*(effective_a2 - link_length_5_minus_link_length_4)
         )
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a2 - link_length_4_plus_link_length_5)
                 + 0.5*abs(effective_a2 + link_length_4_plus_link_length_5)
@@ -1046,9 +1038,7 @@ class KinType12XY(OffsetKinematics):
             centre_1_y = pivot_upper_y
         rod_1_x = flange_x - centre_1_x
         rod_1_y = flange_y - centre_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
         cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
         pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear

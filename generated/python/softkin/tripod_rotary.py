@@ -24,9 +24,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 63 additions, 69 multiplications, 5 divisions, 2 square roots, 6 sines
-    inverse: 96 additions, 73 multiplications, 22 divisions, 9 square roots, 3 sines
-    inverse, all 8 branches open: 761 additions, 584 multiplications, 176 divisions, 72 square roots, 24 sines
+    forward: 60 additions, 69 multiplications, 5 divisions, 2 square roots, 6 sines
+    inverse: 93 additions, 67 multiplications, 22 divisions, 9 square roots, 3 sines
+    inverse, all 8 branches open: 737 additions, 536 multiplications, 176 divisions, 72 square roots, 24 sines
 
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -648,15 +648,18 @@ class TripodRotary(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
         part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z)*z - part_of_scaled_cosine_a1
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
-        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
-        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        twice_arm_length_1_times_effective_a1 = effective_a1*twice_arm_length_1
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
+        one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -685,15 +688,18 @@ class TripodRotary(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = arm_length_1*effective_a2  # a2: law of cosines in the rod 2 equation
         part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
         # cosine times the scale, seen from the origin
         scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
-        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
-        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        arm_length_1_times_effective_a2 = arm_length_1*effective_a2
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
+        one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -724,14 +730,17 @@ class TripodRotary(OffsetKinematics):
         # a3: its effective length is too short
         if not (effective_a3 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        swing_scale_a3 = arm_length_1*effective_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
-        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
-        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        arm_length_1_times_effective_a3 = arm_length_1*effective_a3
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
+        one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -756,9 +765,7 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
         pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
@@ -766,9 +773,7 @@ class TripodRotary(OffsetKinematics):
         sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
         pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
@@ -778,9 +783,7 @@ class TripodRotary(OffsetKinematics):
         sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/effective_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
         pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
@@ -1217,18 +1220,21 @@ class TripodRotary(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
         flange_y = y - point_y  # the flange behind the point
         part_of_scaled_cosine_a1_2 = part_of_scaled_cosine_a1 - (fixed_length_2 - span_1_z)*flange_z
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = (
             (fixed_length_1_minus_arm_1_radius - span_1_x)*flange_x - part_of_scaled_cosine_a1_2 - flange_y*flange_y
         )
-        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
-        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        twice_arm_length_1_times_effective_a1 = effective_a1*twice_arm_length_1
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
+        one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -1257,15 +1263,18 @@ class TripodRotary(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = arm_length_1*effective_a2  # a2: law of cosines in the rod 2 equation
         part_of_scaled_cosine_a2 = flange_x*(part_of_pivot_2_x - span_2_x) - part_of_scaled_cosine_a1_2
         # cosine times the scale, seen from the origin
         scaled_cosine_a2 = -part_of_scaled_cosine_a2 - flange_y*(part_of_pivot_2_y - span_2_y)
-        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
-        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        arm_length_1_times_effective_a2 = arm_length_1*effective_a2
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
+        one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -1296,14 +1305,17 @@ class TripodRotary(OffsetKinematics):
         # a3: its effective length is too short
         if not (effective_a3 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        swing_scale_a3 = arm_length_1*effective_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a3 = flange_y*(part_of_pivot_2_y + span_3_y) - part_of_scaled_cosine_a2
-        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
-        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        arm_length_1_times_effective_a3 = arm_length_1*effective_a3
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
+        one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -1328,9 +1340,7 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
         pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
@@ -1338,9 +1348,7 @@ class TripodRotary(OffsetKinematics):
         sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = flange_z - pivot_1_z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
         pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
@@ -1350,9 +1358,7 @@ class TripodRotary(OffsetKinematics):
         sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/effective_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = flange_z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
         pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3

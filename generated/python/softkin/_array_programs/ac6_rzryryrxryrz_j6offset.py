@@ -67,7 +67,6 @@ class ArrayPrograms(Programs):
         d6 = k.d6
         j6_offset_x = k.j6_offset_x
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        swing_scale_q3_tried_squared = k.swing_scale_q3_tried_squared
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # the point that the last joints turn about
@@ -130,7 +129,7 @@ class ArrayPrograms(Programs):
         reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
         part_of_one_less_cos_q3_tried = a2_plus_effective_q3_tried - reach_tried
         part_of_one_less_cos_q3_tried_2 = a2_plus_effective_q3_tried + reach_tried
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + z_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_tried = part_of_one_less_cos_q3_tried*part_of_one_less_cos_q3_tried_2
         part_of_one_plus_cos_q3_tried = a2_minus_effective_q3_tried - reach_tried
         part_of_one_plus_cos_q3_tried_2 = a2_minus_effective_q3_tried + reach_tried
@@ -297,8 +296,8 @@ class ArrayPrograms(Programs):
             (r11_from_q123_tried + slope_r12_from_q123_tried)*cos_q6_tried
             + (slope_r11_from_q123_tried - r12_from_q123_tried)*sin_q6_tried
         )
-        guard = 1e-12 + sine_square_q3_tried/swing_scale_q3_tried_squared
-        slope_guard = slope_sine_square_q3_tried/swing_scale_q3_tried_squared
+        guard = 1.000000000001 - cos_swing_q3_tried*cos_swing_q3_tried
+        slope_guard = -2.0*slope_cos_swing_q3_tried*cos_swing_q3_tried
         return (
             -r12_from_q123_before_q6_tried, -slope_r12_from_q123_before_q6_tried, guard, slope_guard, cos_q1_tried,
             sin_q1_tried, cos_q2_tried, sin_q2_tried,
@@ -357,7 +356,7 @@ class ArrayPrograms(Programs):
         wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*j6_offset_x - d6*goal_r33
         wrist_z_from_q1_tried = wrist_z_tried - d1  # what the unknown links must span
         reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + z_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_tried = (a2_plus_effective_q3_tried + reach_tried)*(a2_plus_effective_q3_tried - reach_tried)
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = (
@@ -878,7 +877,6 @@ class ArrayPrograms(Programs):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
-        part_of_constant = k.part_of_constant
         searched = k.searched
         single_a1 = k.single_a1
         single_a2 = k.single_a2
@@ -909,7 +907,7 @@ class ArrayPrograms(Programs):
         reach_closed = sqrt(
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + z_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_closed = (
             (a2_plus_effective_q3_tried + reach_closed)*(a2_plus_effective_q3_tried - reach_closed)
         )
@@ -917,9 +915,12 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_closed = (
             (reach_closed - a2_minus_effective_q3_tried)*(a2_minus_effective_q3_tried + reach_closed)
         )
-        sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
+        # twice the scale, with the rounding of its parts
+        both_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+        sum_q3_closed = select(both_q3_closed > 0.0, both_q3_closed, 1.0)
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/sum_q3_closed
         # q3: out of reach
-        require(status, searched | (sine_square_q3_closed >= -part_of_constant), Status.UNREACHABLE)
+        require(status, searched | (absolute(cos_swing_q3_closed) <= 1.0000000000005), Status.UNREACHABLE)
         # without the offset there is no second crossing
         require(status, searched | (sigma_crossing > 0), Status.UNREACHABLE)
         free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -938,11 +939,11 @@ class ArrayPrograms(Programs):
         require(status, found_ | (opposite(searched)), Status.UNREACHABLE)
 
         def elsewhere_q1(
-            distance_q1_closed: Real, free_a1: Real, free_a2: Real, one_less_cos_q3_closed: Real,
-            one_plus_cos_q3_closed: Real, r11: Real, r12: Real, r13: Real, r21: Real, r22: Real, r23: Real, r31: Real,
-            r32: Real, r33: Real, reach_closed: Real, ref_a4: Real, sigma_elbow: Whole, sigma_shoulder: Whole,
-            sigma_wrist: Whole, sine_square_q3_closed: Real, wrist_x_closed: Real, wrist_x_from_q1_closed: Real,
-            wrist_y_closed: Real, wrist_z_from_q1_closed: Real,
+            cos_swing_q3_closed: Real, distance_q1_closed: Real, free_a1: Real, free_a2: Real,
+            one_less_cos_q3_closed: Real, one_plus_cos_q3_closed: Real, r11: Real, r12: Real, r13: Real, r21: Real,
+            r22: Real, r23: Real, r31: Real, r32: Real, r33: Real, reach_closed: Real, ref_a4: Real,
+            sigma_elbow: Whole, sigma_shoulder: Whole, sigma_wrist: Whole, sum_q3_closed: Real, wrist_x_closed: Real,
+            wrist_x_from_q1_closed: Real, wrist_y_closed: Real, wrist_z_from_q1_closed: Real,
         ) -> Reals:
 
             def elsewhere_cos_q1_closed(free_a1: Real) -> Reals:
@@ -961,11 +962,8 @@ class ArrayPrograms(Programs):
                 (free_a1,),
             )
             q1 = atan2(sin_q1_closed, cos_q1_closed)
-            # twice the scale, with the rounding of its parts
-            both_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-            sum_q3_closed = select(both_q3_closed > 0.0, both_q3_closed, 1.0)
+            sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
             sin_swing_q3_closed = 2.0*root(sine_square_q3_closed)*sigma_elbow/sum_q3_closed
-            cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/sum_q3_closed
 
             def elsewhere_cos_q2_closed(free_a2: Real) -> Reals:
                 cos_q2_closed = cos(free_a2)  # its reference where it is free
@@ -1045,9 +1043,10 @@ class ArrayPrograms(Programs):
             (q1, q2, q3, q4, q5, q6),
             elsewhere_q1,
             (
-                distance_q1_closed, free_a1, free_a2, one_less_cos_q3_closed, one_plus_cos_q3_closed, r11, r12, r13,
-                r21, r22, r23, r31, r32, r33, reach_closed, ref_a4, sigma_elbow, sigma_shoulder, sigma_wrist,
-                sine_square_q3_closed, wrist_x_closed, wrist_x_from_q1_closed, wrist_y_closed, wrist_z_from_q1_closed,
+                cos_swing_q3_closed, distance_q1_closed, free_a1, free_a2, one_less_cos_q3_closed,
+                one_plus_cos_q3_closed, r11, r12, r13, r21, r22, r23, r31, r32, r33, reach_closed, ref_a4,
+                sigma_elbow, sigma_shoulder, sigma_wrist, sum_q3_closed, wrist_x_closed, wrist_x_from_q1_closed,
+                wrist_y_closed, wrist_z_from_q1_closed,
             ),
         )
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open

@@ -185,7 +185,6 @@ class ArrayPrograms(Programs):
         part_of_divisor_q6_q1_for_q3 = k.part_of_divisor_q6_q1_for_q3
         part_of_highest_q6_q1_for_q3 = k.part_of_highest_q6_q1_for_q3
         rounding_q1 = k.rounding_q1
-        scale_q3_squared_times_rounding = k.scale_q3_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -783,17 +782,18 @@ class ArrayPrograms(Programs):
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        # q3: out of reach
-        require(status, sine_square_q3 >= -scale_q3_squared_times_rounding, Status.UNREACHABLE)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = select(absolute(both_q3) > 0.0, both_q3, 1.0)
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # q3: out of reach
+        require(status, absolute(cos_q3) <= 1.0000000000005, Status.UNREACHABLE)
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_q3 = 2.0*root(sine_square_q3)*sigma_elbow/absolute(sum_q3)
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
@@ -904,7 +904,6 @@ class ArrayPrograms(Programs):
         part_of_divisor_q6_q1_for_q3 = k.part_of_divisor_q6_q1_for_q3
         part_of_highest_q6_q1_for_q3 = k.part_of_highest_q6_q1_for_q3
         rounding_q1 = k.rounding_q1
-        scale_q3_squared_times_rounding = k.scale_q3_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -2903,22 +2902,21 @@ class ArrayPrograms(Programs):
         reach_left_down = sqrt(
             wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
         )
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_left_down = (a2_plus_a3 + reach_left_down)*(a2_plus_a3 - reach_left_down)
         # 1 + cosine, times the scale
         one_plus_cos_q3_left_down = (reach_left_down - a2_minus_a3)*(a2_minus_a3 + reach_left_down)
-        # the square of sine times scale
-        sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down
-        # q3: out of reach
-        refusal_left_down = select(sine_square_q3_left_down >= -scale_q3_squared_times_rounding, 0, 3)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        # A1: its turn
-        axis_a1_left_down = nearest_period(offset_a1 + degrees(sin_q1_left_down, cos_q1_left_down), near_a1)
         # twice the scale, with the rounding of its parts
         both_q3_left_down = one_less_cos_q3_left_down + one_plus_cos_q3_left_down
         sum_q3_left_down = select(absolute(both_q3_left_down) > 0.0, both_q3_left_down, 1.0)
         cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)/sum_q3_left_down
+        refusal_left_down = select(absolute(cos_q3_left_down) <= 1.0000000000005, 0, 3)  # q3: out of reach
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        # A1: its turn
+        axis_a1_left_down = nearest_period(offset_a1 + degrees(sin_q1_left_down, cos_q1_left_down), near_a1)
+        # the square of sine times scale
+        sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down
         sin_q3_left_up_down = 2.0*root(sine_square_q3_left_down)/absolute(sum_q3_left_down)
 
         def elsewhere_direction_x_q2_left_up_down(ref_a2: Real) -> Reals:
@@ -3180,17 +3178,17 @@ class ArrayPrograms(Programs):
         reach_left_up = sqrt(
             wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
         )
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_left_up = (a2_plus_a3 + reach_left_up)*(a2_plus_a3 - reach_left_up)
         # 1 + cosine, times the scale
         one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up)
-        sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up  # the square of sine times scale
-        refusal_left_up = select(sine_square_q3_left_up >= -scale_q3_squared_times_rounding, 0, 3)  # q3: out of reach
-        axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)  # A1: its turn
         # twice the scale, with the rounding of its parts
         both_q3_left_up = one_less_cos_q3_left_up + one_plus_cos_q3_left_up
         sum_q3_left_up = select(absolute(both_q3_left_up) > 0.0, both_q3_left_up, 1.0)
         cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)/sum_q3_left_up
+        refusal_left_up = select(absolute(cos_q3_left_up) <= 1.0000000000005, 0, 3)  # q3: out of reach
+        axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)  # A1: its turn
+        sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up  # the square of sine times scale
         sin_q3_left_up_up = 2.0*root(sine_square_q3_left_up)/absolute(sum_q3_left_up)
 
         def elsewhere_direction_x_q2_left_up_up(ref_a2: Real) -> Reals:
@@ -3469,20 +3467,19 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
             + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
         )
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_right_down = (a2_plus_a3 + reach_right_down)*(a2_plus_a3 - reach_right_down)
         # 1 + cosine, times the scale
         one_plus_cos_q3_right_down = (reach_right_down - a2_minus_a3)*(a2_minus_a3 + reach_right_down)
-        # the square of sine times scale
-        sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down
-        # q3: out of reach
-        refusal_right_down = select(sine_square_q3_right_down >= -scale_q3_squared_times_rounding, 0, 3)
-        # A1: its turn
-        axis_a1_right_down = nearest_period(offset_a1 + degrees(sin_q1_right_down, cos_q1_right_down), near_a1)
         # twice the scale, with the rounding of its parts
         both_q3_right_down = one_less_cos_q3_right_down + one_plus_cos_q3_right_down
         sum_q3_right_down = select(absolute(both_q3_right_down) > 0.0, both_q3_right_down, 1.0)
         cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)/sum_q3_right_down
+        refusal_right_down = select(absolute(cos_q3_right_down) <= 1.0000000000005, 0, 3)  # q3: out of reach
+        # A1: its turn
+        axis_a1_right_down = nearest_period(offset_a1 + degrees(sin_q1_right_down, cos_q1_right_down), near_a1)
+        # the square of sine times scale
+        sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down
         sin_q3_right_up_down = 2.0*root(sine_square_q3_right_down)/absolute(sum_q3_right_down)
 
         def elsewhere_direction_x_q2_right_up_down(ref_a2: Real) -> Reals:
@@ -3743,19 +3740,18 @@ class ArrayPrograms(Programs):
         reach_right_up = sqrt(
             wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
         )
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_right_up = (a2_plus_a3 + reach_right_up)*(a2_plus_a3 - reach_right_up)
         # 1 + cosine, times the scale
         one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up)
-        sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up  # the square of sine times scale
-        # q3: out of reach
-        refusal_right_up = select(sine_square_q3_right_up >= -scale_q3_squared_times_rounding, 0, 3)
-        # A1: its turn
-        axis_a1_right_up = nearest_period(offset_a1 + degrees(sin_q1_right_up, cos_q1_right_up), near_a1)
         # twice the scale, with the rounding of its parts
         both_q3_right_up = one_less_cos_q3_right_up + one_plus_cos_q3_right_up
         sum_q3_right_up = select(absolute(both_q3_right_up) > 0.0, both_q3_right_up, 1.0)
         cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)/sum_q3_right_up
+        refusal_right_up = select(absolute(cos_q3_right_up) <= 1.0000000000005, 0, 3)  # q3: out of reach
+        # A1: its turn
+        axis_a1_right_up = nearest_period(offset_a1 + degrees(sin_q1_right_up, cos_q1_right_up), near_a1)
+        sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up  # the square of sine times scale
         sin_q3_right_up_up = 2.0*root(sine_square_q3_right_up)/absolute(sum_q3_right_up)
 
         def elsewhere_direction_x_q2_right_up_up(ref_a2: Real) -> Reals:

@@ -116,7 +116,6 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        twice_inner_arm = k.twice_inner_arm
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -135,30 +134,30 @@ class ArrayPrograms(Programs):
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > inner_arm_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_inner_arm  # a1: law of cosines in the rod 1 equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm)*(divisor_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a1) <= 1.0000000000005, Status.UNREACHABLE)
         span_2_x = tcp_displacement_minus_displacement + x  # rod 2
         effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > inner_arm_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_inner_arm  # a2: law of cosines in the rod 2 equation
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm)*(divisor_a2 + inner_arm_plus_outer_arm)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        require(status, absolute(cos_swing_a2) <= 1.0000000000005, Status.UNREACHABLE)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/divisor_a1
         pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
@@ -166,9 +165,7 @@ class ArrayPrograms(Programs):
         sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
         cos_a2 = (span_2_x*cos_swing_a2 + y*sin_swing_a2)/divisor_a2
         pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
@@ -224,7 +221,6 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        twice_inner_arm = k.twice_inner_arm
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -243,30 +239,30 @@ class ArrayPrograms(Programs):
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > inner_arm_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_inner_arm  # a1: law of cosines in the rod 1 equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm)*(divisor_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a1) <= 1.0000000000005, Status.UNREACHABLE)
         span_2_x = tcp_displacement_minus_displacement + x  # rod 2
         effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > inner_arm_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_inner_arm  # a2: law of cosines in the rod 2 equation
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm)*(divisor_a2 + inner_arm_plus_outer_arm)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        require(status, absolute(cos_swing_a2) <= 1.0000000000005, Status.UNREACHABLE)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1_outward = 2.0*root(sine_square_a1)/sum_a1
         cos_a1_outward = (span_1_x*cos_swing_a1 - y*sin_swing_a1_outward)/divisor_a1
         pivot_1_x_outward = tcp_displacement_minus_displacement - inner_arm*cos_a1_outward  # rod 1
@@ -274,9 +270,7 @@ class ArrayPrograms(Programs):
         sin_a1_outward = (y*cos_swing_a1 + span_1_x*sin_swing_a1_outward)/divisor_a1
         pivot_1_y_outward = -inner_arm*sin_a1_outward  # rod 1
         rod_1_y_outward = y - pivot_1_y_outward
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
         cos_a2_outward = (span_2_x*cos_swing_a2 - y*sin_swing_a2_inward)/divisor_a2
         pivot_2_x_outward = inner_arm*cos_a2_outward - tcp_displacement_minus_displacement  # rod 2

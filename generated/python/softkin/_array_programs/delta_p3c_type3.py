@@ -204,9 +204,6 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        twice_inner_arm_1 = k.twice_inner_arm_1
-        twice_inner_arm_2 = k.twice_inner_arm_2
-        twice_inner_arm_3 = k.twice_inner_arm_3
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -224,63 +221,64 @@ class ArrayPrograms(Programs):
         effective_a1 = root(z_squared + along_a1*along_a1)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_1_times_shortest_link, Status.UNREACHABLE)
-        divisor_a1 = select(effective_a1 > inner_arm_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
         part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
+        divisor_a1 = select(effective_a1 > inner_arm_1_times_shortest_link, effective_a1, 1.0)
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = divisor_a1 + inner_arm_1
         # 1 + cosine, times the scale
         one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a1) <= 1.0000000000005, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = root(z_squared + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_2_times_shortest_link, Status.UNREACHABLE)
-        divisor_a2 = select(effective_a2 > inner_arm_2_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
         part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
+        divisor_a2 = select(effective_a2 > inner_arm_2_times_shortest_link, effective_a2, 1.0)
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = divisor_a2 + inner_arm_2
         # 1 + cosine, times the scale
         one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a2) <= 1.0000000000005, Status.UNREACHABLE)
         span_3_x = x - part_of_pivot_3_x  # rod 3
         span_3_y = y - part_of_pivot_3_y  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = root(z_squared + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > inner_arm_3_times_shortest_link, Status.UNREACHABLE)
-        divisor_a3 = select(effective_a3 > inner_arm_3_times_shortest_link, effective_a3, 1.0)
-        swing_scale_a3 = divisor_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
         part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
+        divisor_a3 = select(effective_a3 > inner_arm_3_times_shortest_link, effective_a3, 1.0)
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
-        # 1 - cosine, times the scale
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = divisor_a3 + inner_arm_3
         # 1 + cosine, times the scale
         one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        require(status, absolute(cos_swing_a3) <= 1.0000000000005, Status.UNREACHABLE)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
         cos_a1 = (along_a1*cos_swing_a1 + z*sin_swing_a1)/divisor_a1
         pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
@@ -290,9 +288,7 @@ class ArrayPrograms(Programs):
         sin_a1 = (along_a1*sin_swing_a1 - z*cos_swing_a1)/divisor_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
         cos_a2 = (along_a2*cos_swing_a2 + z*sin_swing_a2)/divisor_a2
         pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
@@ -302,9 +298,7 @@ class ArrayPrograms(Programs):
         sin_a2 = (along_a2*sin_swing_a2 - z*cos_swing_a2)/divisor_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/sum_a3
         cos_a3 = (along_a3*cos_swing_a3 + z*sin_swing_a3)/divisor_a3
         pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
@@ -399,9 +393,6 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        twice_inner_arm_1 = k.twice_inner_arm_1
-        twice_inner_arm_2 = k.twice_inner_arm_2
-        twice_inner_arm_3 = k.twice_inner_arm_3
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -419,63 +410,64 @@ class ArrayPrograms(Programs):
         effective_a1 = root(z_squared + along_a1*along_a1)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_1_times_shortest_link, Status.UNREACHABLE)
-        divisor_a1 = select(effective_a1 > inner_arm_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
         part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
+        divisor_a1 = select(effective_a1 > inner_arm_1_times_shortest_link, effective_a1, 1.0)
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = divisor_a1 + inner_arm_1
         # 1 + cosine, times the scale
         one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a1) <= 1.0000000000005, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = root(z_squared + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_2_times_shortest_link, Status.UNREACHABLE)
-        divisor_a2 = select(effective_a2 > inner_arm_2_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
         part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
+        divisor_a2 = select(effective_a2 > inner_arm_2_times_shortest_link, effective_a2, 1.0)
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = divisor_a2 + inner_arm_2
         # 1 + cosine, times the scale
         one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a2) <= 1.0000000000005, Status.UNREACHABLE)
         span_3_x = x - part_of_pivot_3_x  # rod 3
         span_3_y = y - part_of_pivot_3_y  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = root(z_squared + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > inner_arm_3_times_shortest_link, Status.UNREACHABLE)
-        divisor_a3 = select(effective_a3 > inner_arm_3_times_shortest_link, effective_a3, 1.0)
-        swing_scale_a3 = divisor_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
         part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
+        divisor_a3 = select(effective_a3 > inner_arm_3_times_shortest_link, effective_a3, 1.0)
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
-        # 1 - cosine, times the scale
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = divisor_a3 + inner_arm_3
         # 1 + cosine, times the scale
         one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        require(status, absolute(cos_swing_a3) <= 1.0000000000005, Status.UNREACHABLE)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1_inward = 2.0*root(sine_square_a1)/sum_a1
         cos_a1_outward = (along_a1*cos_swing_a1 - z*sin_swing_a1_inward)/divisor_a1
         pivot_1_x_outward = part_of_pivot_1_x + cos_a1_outward*cos_azimuth_1_times_inner_arm_1  # rod 1
@@ -485,9 +477,7 @@ class ArrayPrograms(Programs):
         sin_a1_outward = (-along_a1*sin_swing_a1_inward - z*cos_swing_a1)/divisor_a1
         pivot_1_z_outward = -inner_arm_1*sin_a1_outward  # rod 1
         rod_1_z_outward = z - pivot_1_z_outward
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
         cos_a2_outward = (along_a2*cos_swing_a2 - z*sin_swing_a2_inward)/divisor_a2
         pivot_2_x_outward = part_of_pivot_2_x + cos_a2_outward*cos_azimuth_2_times_inner_arm_2  # rod 2
@@ -497,9 +487,7 @@ class ArrayPrograms(Programs):
         sin_a2_outward = (-along_a2*sin_swing_a2_inward - z*cos_swing_a2)/divisor_a2
         pivot_2_z_outward = -inner_arm_2*sin_a2_outward  # rod 2
         rod_2_z_outward = z - pivot_2_z_outward
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3_inward = 2.0*root(sine_square_a3)/sum_a3
         cos_a3_outward = (along_a3*cos_swing_a3 - z*sin_swing_a3_inward)/divisor_a3
         pivot_3_x_outward = part_of_pivot_3_x + cos_a3_outward*cos_azimuth_3_times_inner_arm_3  # rod 3

@@ -168,8 +168,6 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         swap_xy = k.swap_xy
-        twice_link_length_1 = k.twice_link_length_1
-        twice_link_length_5 = k.twice_link_length_5
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -196,8 +194,7 @@ class ArrayPrograms(Programs):
         # a1: its effective length is too short
         require(status, effective_a1 > link_length_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > link_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
         )
@@ -205,12 +202,12 @@ class ArrayPrograms(Programs):
         one_plus_cos_a1 = (
             (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # a1: out of reach
+        require(status, absolute(cos_swing_a1) <= 1.0000000000005, Status.UNREACHABLE)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/sum_a1
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
@@ -222,8 +219,7 @@ class ArrayPrograms(Programs):
         # a2: its effective length is too short
         require(status, effective_a2 > link_length_5_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > link_length_5_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_link_length_5  # a2: law of cosines in the rod rear equation
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2 + link_length_4_plus_link_length_5)*(divisor_a2 + link_length_5_minus_link_length_4)
         )
@@ -231,9 +227,11 @@ class ArrayPrograms(Programs):
         one_plus_cos_a2 = (
             (link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4)
         )
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a2) <= 1.0000000000005, Status.UNREACHABLE)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
 
@@ -252,9 +250,7 @@ class ArrayPrograms(Programs):
         )
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/sum_a2
         cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
         pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
@@ -321,8 +317,6 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         swap_xy = k.swap_xy
-        twice_link_length_1 = k.twice_link_length_1
-        twice_link_length_5 = k.twice_link_length_5
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -349,8 +343,7 @@ class ArrayPrograms(Programs):
         # a1: its effective length is too short
         require(status, effective_a1 > link_length_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > link_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
         )
@@ -358,12 +351,12 @@ class ArrayPrograms(Programs):
         one_plus_cos_a1 = (
             (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # a1: out of reach
+        require(status, absolute(cos_swing_a1) <= 1.0000000000005, Status.UNREACHABLE)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1_right = 2.0*root(sine_square_a1)/sum_a1
         sin_a1_left = (span_upper_x*cos_swing_a1 - span_upper_y*sin_swing_a1_right)/divisor_a1
         pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
@@ -400,7 +393,7 @@ class ArrayPrograms(Programs):
         # effective length that the angle turns
         effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
         divisor_a2_left = select(effective_a2_left > link_length_5_times_shortest_link, effective_a2_left, 1.0)
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2_left = (
             (divisor_a2_left + link_length_4_plus_link_length_5)*(divisor_a2_left + link_length_5_minus_link_length_4)
         )
@@ -415,7 +408,6 @@ class ArrayPrograms(Programs):
         sin_swing_a2_left_right = 2.0*root(sine_square_a2_left)/sum_a2_left
         cos_a2_left_left = (across_a2_left*sin_swing_a2_left_right + along_a2_left*cos_swing_a2_left)/divisor_a2_left
         sin_a2_left_left = (across_a2_left*cos_swing_a2_left - along_a2_left*sin_swing_a2_left_right)/divisor_a2_left
-        swing_scale_a2_left = divisor_a2_left*twice_link_length_5  # a2: law of cosines in the rod rear equation
         cos_a2_left_right = (along_a2_left*cos_swing_a2_left - across_a2_left*sin_swing_a2_left_right)/divisor_a2_left
         sin_a2_left_right = (across_a2_left*cos_swing_a2_left + along_a2_left*sin_swing_a2_left_right)/divisor_a2_left
 
@@ -471,7 +463,7 @@ class ArrayPrograms(Programs):
         refusal_left_left, refusal_left_right = elsewhere(
             (
                 (effective_a2_left > link_length_5_times_shortest_link)
-                & (sine_square_a2_left >= -1e-12*swing_scale_a2_left*swing_scale_a2_left)
+                & (absolute(cos_swing_a2_left) <= 1.0000000000005)
             ),
             (refusal_left_left, refusal_left_right),
             elsewhere_refusal_left_left,
@@ -491,7 +483,7 @@ class ArrayPrograms(Programs):
         # effective length that the angle turns
         effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
         divisor_a2_right = select(effective_a2_right > link_length_5_times_shortest_link, effective_a2_right, 1.0)
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2_right = (
             (divisor_a2_right + link_length_4_plus_link_length_5)
             *(divisor_a2_right + link_length_5_minus_link_length_4)
@@ -513,7 +505,6 @@ class ArrayPrograms(Programs):
         sin_a2_right_left = (
             (across_a2_right*cos_swing_a2_right - along_a2_right*sin_swing_a2_right_right)/divisor_a2_right
         )
-        swing_scale_a2_right = divisor_a2_right*twice_link_length_5  # a2: law of cosines in the rod rear equation
         cos_a2_right_right = (
             (along_a2_right*cos_swing_a2_right - across_a2_right*sin_swing_a2_right_right)/divisor_a2_right
         )
@@ -573,7 +564,7 @@ class ArrayPrograms(Programs):
         refusal_right_left, refusal_right_right = elsewhere(
             (
                 (effective_a2_right > link_length_5_times_shortest_link)
-                & (sine_square_a2_right >= -1e-12*swing_scale_a2_right*swing_scale_a2_right)
+                & (absolute(cos_swing_a2_right) <= 1.0000000000005)
             ),
             (refusal_right_left, refusal_right_right),
             elsewhere_refusal_right_left,

@@ -135,7 +135,6 @@ class ArrayPrograms(Programs):
         single_a3 = k.single_a3
         size_q1_for_q3_2 = k.size_q1_for_q3_2
         size_q1_for_q3_2_times_rounding = k.size_q1_for_q3_2_times_rounding
-        swing_scale_q3_2_squared_times_rounding = k.swing_scale_q3_2_squared_times_rounding
         twice_d3 = k.twice_d3
         status = passed(position)
         # numbers of reasonable size
@@ -220,13 +219,15 @@ class ArrayPrograms(Programs):
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = select(both_q3 > 0.0, both_q3, 1.0)
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         # q3: out of reach
-        require(status, sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_q3) <= 1.0000000000005, Status.UNREACHABLE)
 
         def elsewhere_cos_q1(
             cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real, turned_cos_q1_for_q3: Real,
@@ -280,10 +281,8 @@ class ArrayPrograms(Programs):
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = select(both_q3 > 0.0, both_q3, 1.0)
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -365,7 +364,6 @@ class ArrayPrograms(Programs):
         single_a3 = k.single_a3
         size_q1_for_q3_2 = k.size_q1_for_q3_2
         size_q1_for_q3_2_times_rounding = k.size_q1_for_q3_2_times_rounding
-        swing_scale_q3_2_squared_times_rounding = k.swing_scale_q3_2_squared_times_rounding
         twice_d3 = k.twice_d3
         status = passed(position)
         # numbers of reasonable size
@@ -601,21 +599,20 @@ class ArrayPrograms(Programs):
         )
         wrist_x_from_q1_front = ahead_q1_front - a1  # what the unknown links must span
         reach_front = root(wrist_y_from_q1_squared + wrist_x_from_q1_front*wrist_x_from_q1_front)
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_front = (a2_plus_effective_q3_2 + reach_front)*(a2_plus_effective_q3_2 - reach_front)
         # 1 + cosine, times the scale
         one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_front)
-        sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front  # the square of sine times scale
-        # q3: out of reach
-        refusal_front = select(sine_square_q3_front >= -swing_scale_q3_2_squared_times_rounding, 0, 3)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
         # twice the scale, with the rounding of its parts
         both_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
         sum_q3_front = select(both_q3_front > 0.0, both_q3_front, 1.0)
-        sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/sum_q3_front
         cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/sum_q3_front
+        refusal_front = select(absolute(cos_swing_q3_front) <= 1.0000000000005, 0, 3)  # q3: out of reach
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
+        sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front  # the square of sine times scale
+        sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/sum_q3_front
 
         def elsewhere_direction_x_q2_front_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -672,18 +669,17 @@ class ArrayPrograms(Programs):
         axis_a3_front_up = nearest_period(offset_a3 + degrees(sin_q3_front_up, cos_q3_front_up), near_a3)
         wrist_x_from_q1_back = ahead_q1_back - a1  # what the unknown links must span
         reach_back = root(wrist_y_from_q1_squared + wrist_x_from_q1_back*wrist_x_from_q1_back)
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_back = (a2_plus_effective_q3_2 + reach_back)*(a2_plus_effective_q3_2 - reach_back)
         # 1 + cosine, times the scale
         one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_back)
-        sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back  # the square of sine times scale
-        # q3: out of reach
-        refusal_back = select(sine_square_q3_back >= -swing_scale_q3_2_squared_times_rounding, 0, 3)
-        axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
         both_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back  # twice the scale, with the rounding of its parts
         sum_q3_back = select(both_q3_back > 0.0, both_q3_back, 1.0)
-        sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/sum_q3_back
         cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/sum_q3_back
+        refusal_back = select(absolute(cos_swing_q3_back) <= 1.0000000000005, 0, 3)  # q3: out of reach
+        axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
+        sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back  # the square of sine times scale
+        sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/sum_q3_back
 
         def elsewhere_direction_x_q2_back_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE

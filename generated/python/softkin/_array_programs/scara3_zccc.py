@@ -105,7 +105,6 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        scale_a3_squared_times_rounding = k.scale_a3_squared_times_rounding
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         single_a4 = k.single_a4
@@ -130,17 +129,17 @@ class ArrayPrograms(Programs):
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # 1 - cosine, times the scale
+        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        # a3: out of reach
-        require(status, sine_square_a3 >= -scale_a3_squared_times_rounding, Status.UNREACHABLE)
-        axis_a1 = offset_a1 + z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # a3: out of reach
+        require(status, absolute(cos_a3) <= 1.0000000000005, Status.UNREACHABLE)
+        axis_a1 = offset_a1 + z
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_a3 = 2.0*root(sine_square_a3)*sigma_elbow/sum_a3
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
@@ -220,7 +219,6 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        scale_a3_squared_times_rounding = k.scale_a3_squared_times_rounding
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         single_a4 = k.single_a4
@@ -245,17 +243,17 @@ class ArrayPrograms(Programs):
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # 1 - cosine, times the scale
+        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        # a3: out of reach
-        require(status, sine_square_a3 >= -scale_a3_squared_times_rounding, Status.UNREACHABLE)
-        axis_a1 = offset_a1 + z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # a3: out of reach
+        require(status, absolute(cos_a3) <= 1.0000000000005, Status.UNREACHABLE)
+        axis_a1 = offset_a1 + z
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_a3_right = 2.0*root(sine_square_a3)/sum_a3
 
         def elsewhere_direction_x_a2_right(ref_a2: Real) -> Reals:

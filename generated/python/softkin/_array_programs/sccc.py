@@ -110,7 +110,6 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         part_of_open_a2 = k.part_of_open_a2
-        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -137,16 +136,16 @@ class ArrayPrograms(Programs):
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        # a2: out of reach
-        require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # a2: out of reach
+        require(status, absolute(cos_a2) <= 1.0000000000005, Status.UNREACHABLE)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/sum_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
@@ -293,7 +292,6 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         part_of_open_a2 = k.part_of_open_a2
-        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -320,16 +318,16 @@ class ArrayPrograms(Programs):
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        # a2: out of reach
-        require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # a2: out of reach
+        require(status, absolute(cos_a2) <= 1.0000000000005, Status.UNREACHABLE)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_a2_right = 2.0*root(sine_square_a2)/sum_a2
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:

@@ -188,16 +188,19 @@ class ArrayPrograms(Programs):
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > arm_length_1_times_shortest_link, Status.UNREACHABLE)
-        divisor_a1 = select(effective_a1 > arm_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
         part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z)*z - part_of_scaled_cosine_a1
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
-        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
-        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        divisor_a1 = select(effective_a1 > arm_length_1_times_shortest_link, effective_a1, 1.0)
+        twice_arm_length_1_times_effective_a1 = divisor_a1*twice_arm_length_1
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
+        one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a1) <= 1.0000000000005, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y  # rod 2
         root_of_3_2 = root(3.0)
@@ -207,33 +210,37 @@ class ArrayPrograms(Programs):
         effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > part_of_divisor_a2, Status.UNREACHABLE)
-        divisor_a2 = select(effective_a2 > part_of_divisor_a2, effective_a2, 1.0)
-        swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
         # cosine times the scale, seen from the origin
         scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
-        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
-        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        divisor_a2 = select(effective_a2 > part_of_divisor_a2, effective_a2, 1.0)
+        arm_length_1_times_effective_a2 = arm_length_1*divisor_a2
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
+        one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a2) <= 1.0000000000005, Status.UNREACHABLE)
         span_3_y = part_of_pivot_2_y + y  # rod 3
         along_a3 = span_2_x + root_of_3_2*span_3_y
         effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > part_of_divisor_a2, Status.UNREACHABLE)
-        divisor_a3 = select(effective_a3 > part_of_divisor_a2, effective_a3, 1.0)
-        swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
-        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
-        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        divisor_a3 = select(effective_a3 > part_of_divisor_a2, effective_a3, 1.0)
+        arm_length_1_times_effective_a3 = arm_length_1*divisor_a3
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
+        one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        require(status, absolute(cos_swing_a3) <= 1.0000000000005, Status.UNREACHABLE)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/divisor_a1
         pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
@@ -241,9 +248,7 @@ class ArrayPrograms(Programs):
         sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
         cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/divisor_a2
         pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
@@ -253,9 +258,7 @@ class ArrayPrograms(Programs):
         sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/divisor_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/sum_a3
         cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/divisor_a3
         pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
@@ -361,16 +364,19 @@ class ArrayPrograms(Programs):
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > arm_length_1_times_shortest_link, Status.UNREACHABLE)
-        divisor_a1 = select(effective_a1 > arm_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
         part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z)*z - part_of_scaled_cosine_a1
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
-        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
-        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        divisor_a1 = select(effective_a1 > arm_length_1_times_shortest_link, effective_a1, 1.0)
+        twice_arm_length_1_times_effective_a1 = divisor_a1*twice_arm_length_1
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
+        one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a1) <= 1.0000000000005, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y  # rod 2
         root_of_3_2 = root(3.0)
@@ -380,30 +386,36 @@ class ArrayPrograms(Programs):
         effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > part_of_divisor_a2, Status.UNREACHABLE)
-        divisor_a2 = select(effective_a2 > part_of_divisor_a2, effective_a2, 1.0)
-        swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
         # cosine times the scale, seen from the origin
         scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
-        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
-        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        divisor_a2 = select(effective_a2 > part_of_divisor_a2, effective_a2, 1.0)
+        arm_length_1_times_effective_a2 = arm_length_1*divisor_a2
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
+        one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a2) <= 1.0000000000005, Status.UNREACHABLE)
         span_3_y = part_of_pivot_2_y + y  # rod 3
         along_a3 = span_2_x + root_of_3_2*span_3_y
         effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > part_of_divisor_a2, Status.UNREACHABLE)
-        divisor_a3 = select(effective_a3 > part_of_divisor_a2, effective_a3, 1.0)
-        swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
-        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
-        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        divisor_a3 = select(effective_a3 > part_of_divisor_a2, effective_a3, 1.0)
+        arm_length_1_times_effective_a3 = arm_length_1*divisor_a3
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
+        one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a3) <= 1.0000000000005, Status.UNREACHABLE)
         # ball joint of rod 1
         require(status, absolute(y)/arm_length_2 <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         part = root_of_3_times_half_by_arm_length_2*x
@@ -412,9 +424,7 @@ class ArrayPrograms(Programs):
         require(status, absolute(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 3
         require(status, absolute(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1_outward = 2.0*root(sine_square_a1)/sum_a1
         cos_a1_outward = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1_outward)/divisor_a1
         pivot_1_x_outward = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1_outward  # rod 1
@@ -422,9 +432,7 @@ class ArrayPrograms(Programs):
         sin_a1_outward = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1_outward)/divisor_a1
         pivot_1_z_outward = fixed_length_2 - arm_length_1*sin_a1_outward  # rod 1
         rod_1_z_outward = z - pivot_1_z_outward
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
         cos_a2_outward = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2_inward)/divisor_a2
         pivot_2_x_outward = part_of_pivot_2_x + half_arm_length_1*cos_a2_outward  # rod 2
@@ -434,9 +442,7 @@ class ArrayPrograms(Programs):
         sin_a2_outward = (-across_a2*cos_swing_a2 - along_a2*sin_swing_a2_inward)/divisor_a2
         pivot_2_z_outward = fixed_length_2 - arm_length_1*sin_a2_outward  # rod 2
         rod_2_z_outward = z - pivot_2_z_outward
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3_inward = 2.0*root(sine_square_a3)/sum_a3
         cos_a3_outward = (along_a3*cos_swing_a3 - across_a2*sin_swing_a3_inward)/divisor_a3
         pivot_3_x_outward = part_of_pivot_2_x + half_arm_length_1*cos_a3_outward  # rod 3
