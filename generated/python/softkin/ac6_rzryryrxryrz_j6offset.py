@@ -28,7 +28,7 @@ Singularities:
     determinant: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 143 additions, 189 multiplications, 22 divisions, 0 square roots, 14 sines
+    forward: 143 additions, 189 multiplications, 21 divisions, 0 square roots, 14 sines
     inverse: 76235 additions, 124331 multiplications, 6685 divisions, 3143 square roots, 5316 sines
     inverse, all 16 branches open: 1219265 additions, 1988621 multiplications, 106825 divisions, 50258 square roots, 85056 sines
     the search along A6: at most 760 passes, all of which are counted
@@ -573,17 +573,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             + slope_sin_q1_tried*wrist_y_tried
         )
         slope_reach_tried = (
-            -(
-                -slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried - slope_wrist_z_tried*wrist_z_from_q1_tried
+            (
+                slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried + slope_wrist_z_tried*wrist_z_from_q1_tried
             )/(reach_tried if reach_tried > 0.0 else 1.0)
             if reach_tried > 0.0
             else 0.0
         )
         slope_one_less_cos_q3_tried = (
-            -(part_of_one_less_cos_q3_tried_2 - part_of_one_less_cos_q3_tried)*slope_reach_tried
+            (part_of_one_less_cos_q3_tried - part_of_one_less_cos_q3_tried_2)*slope_reach_tried
         )
         slope_one_plus_cos_q3_tried = (
-            -(part_of_one_plus_cos_q3_tried - part_of_one_plus_cos_q3_tried_2)*slope_reach_tried
+            (part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried)*slope_reach_tried
         )
         if both_q3_tried > 0.0:
             sum_q3_tried = both_q3_tried
@@ -877,10 +877,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
             r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
             error_5 = (
-                -0.5
+                0.5
                 *(
-                    goal_r31*r11_at_q6 + goal_r32*r12_at_q6 + goal_r33*r13_at_q5 - goal_r11*r31_at_q6 - goal_r12*r32_at_q6
-                    - goal_r13*r33_at_q5
+                    goal_r11*r31_at_q6 + goal_r12*r32_at_q6 + goal_r13*r33_at_q5 - goal_r31*r11_at_q6 - goal_r32*r12_at_q6
+                    - goal_r33*r13_at_q5
                 )
             )
             error_6 = (
@@ -932,9 +932,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             product_1_3 = (
                 rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5 + rate_1_6*rate_3_6
             )
-            rate_1_2_plus_rate_1_3 = -rate_1_2 - rate_1_3
-            product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 + rate_1_2_plus_rate_1_3*sin_q1
-            product_1_5 = r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6 - rate_1_2_plus_rate_1_3*cos_q1
+            rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
+            product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 - rate_1_2_plus_rate_1_3*sin_q1
+            product_1_5 = rate_1_2_plus_rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6
             product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23
             product_2_2 = (
                 1e-12 + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4 + rate_2_5*rate_2_5
@@ -943,9 +943,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             product_2_3 = (
                 rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5 + rate_2_6*rate_3_6
             )
-            rate_2_2_plus_rate_2_3 = -rate_2_2 - rate_2_3
-            product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 + rate_2_2_plus_rate_2_3*sin_q1
-            product_2_5 = r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6 - rate_2_2_plus_rate_2_3*cos_q1
+            rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
+            product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 - rate_2_2_plus_rate_2_3*sin_q1
+            product_2_5 = rate_2_2_plus_rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6
             product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23
             product_3_3 = (
                 1e-12 + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5 + rate_3_6*rate_3_6
@@ -1144,10 +1144,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         a1 = k.a1
         a2 = k.a2
         a3 = k.a3
+        a3_by_effective_q3_tried = k.a3_by_effective_q3_tried
         d1 = k.d1
         d4 = k.d4
+        d4_by_effective_q3_tried = k.d4_by_effective_q3_tried
         d6 = k.d6
-        effective_q3_tried = k.effective_q3_tried
         j6_offset_x = k.j6_offset_x
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
@@ -1271,7 +1272,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
-        margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_tried
+        margin_elbow_closed = a3_by_effective_q3_tried*sin_q3_closed + d4_by_effective_q3_tried*cos_q3_closed
         if searched:
             # the point that the last joints turn about
             wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*j6_offset_x

@@ -548,8 +548,8 @@ class Ac6ThreeParallel(Mechanism):
         y_at_q4 = y_at_q3 + a3*r21_at_q23
         y_at_q5 = y_at_q4 - d4*cos_q1
         y_at_q6 = y_at_q5 - d5*r22_at_q234
-        d6_times_r22_at_q5 = -d6*r22_at_q5
-        y = y_at_q6 - d6_times_r22_at_q5
+        d6_times_r22_at_q5 = d6*r22_at_q5
+        y = d6_times_r22_at_q5 + y_at_q6
         r32_at_q5 = -sin_q234*sin_q5
         sin_q2 = sin(q2)
         z_at_q3 = d1 + a2*sin_q2
@@ -570,7 +570,7 @@ class Ac6ThreeParallel(Mechanism):
         r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6
         r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6
         wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
-        wrist_y = d6_times_r22_at_q5 + y
+        wrist_y = y - d6_times_r22_at_q5
         branch_shoulder = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         return (
@@ -732,20 +732,20 @@ class Ac6ThreeParallel(Mechanism):
             if radius_q6_before_q1_for_q3 > 1e-11:
                 along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
                 one_by_radius_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
-                part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
-                cos_q6_before_q1_for_q3 = -part_of_cos_q6_before_q1_for_q3
+                part_of_cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
+                cos_q6_before_q1_for_q3 = part_of_cos_q6_before_q1_for_q3
                 across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
                 part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
                 sin_q6_before_q1_for_q3 = part_of_sin_q6_before_q1_for_q3
                 radius_q6_rate_q1_for_q3 = (
-                    -(
-                        -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                        - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                    (
+                        r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                        + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                     )
                     /radius_q6_before_q1_for_q3
                 )
                 cos_q6_rate_q1_for_q3 = (
-                    (along_q6_rate_q1_for_q3 + part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
+                    (along_q6_rate_q1_for_q3 - part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
                     *one_by_radius_q6_before_q1_for_q3
                 )
                 sin_q6_rate_q1_for_q3 = (
@@ -757,9 +757,9 @@ class Ac6ThreeParallel(Mechanism):
                 sin_q6_before_q1_for_q3 = -sin_of_free_a6
                 if radius_q6_before_q1_for_q3 > 0.0:
                     radius_q6_rate_q1_for_q3 = (
-                        -(
-                            -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                            - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                        (
+                            r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                            + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                         )
                         /radius_q6_before_q1_for_q3
                     )
@@ -1010,7 +1010,7 @@ class Ac6ThreeParallel(Mechanism):
                 wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
                 wrist_y_from_q1_along = d5*r32
                 along_q6_of_q3 = (
-                    -2.0*(-wrist_x_from_q1_along*wrist_x_from_q1_fixed - wrist_y_from_q1_along*wrist_y_from_q1_fixed)
+                    2.0*(wrist_x_from_q1_along*wrist_x_from_q1_fixed + wrist_y_from_q1_along*wrist_y_from_q1_fixed)
                 )
                 wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
                 across_q6_of_q3 = (
@@ -1272,7 +1272,7 @@ class Ac6ThreeParallel(Mechanism):
         wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
         r21_at_q234 = cos_q234*sin_q1
         r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5
-        d6_times_r22_at_q5 = -d6*r22_at_q5
+        d6_times_r22_at_q5 = d6*r22_at_q5
         r22_at_q234 = -sin_q1*sin_q234
         r21_at_q2 = cos_q2*sin_q1
         y_at_q3 = a2*r21_at_q2
@@ -1280,8 +1280,8 @@ class Ac6ThreeParallel(Mechanism):
         y_at_q4 = y_at_q3 + a3*r21_at_q23
         y_at_q5 = y_at_q4 - d4*cos_q1
         y_at_q6 = y_at_q5 - d5*r22_at_q234
-        y = y_at_q6 - d6_times_r22_at_q5
-        wrist_y = d6_times_r22_at_q5 + y
+        y = d6_times_r22_at_q5 + y_at_q6
+        wrist_y = y - d6_times_r22_at_q5
         margin_wrist_on_axis_1 = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         return (margin_wrist_on_axis_1, sin_q3, sin_q5)

@@ -25,8 +25,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 65 additions, 70 multiplications, 7 divisions, 1 square roots, 6 sines
-    inverse: 96 additions, 74 multiplications, 21 divisions, 6 square roots, 3 sines
-    inverse, all 8 branches open: 761 additions, 592 multiplications, 168 divisions, 48 square roots, 24 sines
+    inverse: 90 additions, 74 multiplications, 21 divisions, 6 square roots, 3 sines
+    inverse, all 8 branches open: 713 additions, 592 multiplications, 168 divisions, 48 square roots, 24 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -877,7 +877,7 @@ class DeltaP3CType3(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
@@ -910,7 +910,7 @@ class DeltaP3CType3(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
@@ -942,7 +942,7 @@ class DeltaP3CType3(OffsetKinematics):
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
@@ -970,30 +970,24 @@ class DeltaP3CType3(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (along_a1*cos_swing_a1 + z*sin_swing_a1)/effective_a1
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
-        rod_1_x = x - pivot_1_x
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
-        rod_1_y = y - pivot_1_y
+        rod_1_x = span_1_x - cos_a1*cos_azimuth_1_times_inner_arm_1
+        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1
         sin_a1 = (along_a1*sin_swing_a1 - z*cos_swing_a1)/effective_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (along_a2*cos_swing_a2 + z*sin_swing_a2)/effective_a2
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
-        rod_2_x = x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
-        rod_2_y = y - pivot_2_y
+        rod_2_x = span_2_x - cos_a2*cos_azimuth_2_times_inner_arm_2
+        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - z*cos_swing_a2)/effective_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = (along_a3*cos_swing_a3 + z*sin_swing_a3)/effective_a3
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
-        rod_3_x = x - pivot_3_x
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
-        rod_3_y = y - pivot_3_y
+        rod_3_x = span_3_x - cos_a3*cos_azimuth_3_times_inner_arm_3
+        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3
         sin_a3 = (along_a3*sin_swing_a3 - z*cos_swing_a3)/effective_a3
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
@@ -1190,8 +1184,8 @@ class DeltaP3CType3(OffsetKinematics):
         rod_3_z = z - pivot_3_z
         margin_rods_coplanar = (
             (
-                rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x) - (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x
-                - rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
+                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
+                + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
             )
             /part_of_margin_rods_coplanar
         )
@@ -1322,22 +1316,22 @@ class DeltaP3CType3(OffsetKinematics):
         y = foot_y + pivot_1_y + normal_y*rise
         slope_1_by_y = 2.0*(sin_azimuth_1_times_tcp_radius_1 + y) - part_of_slope_1_by_y*twice_sin_azimuth_1
         z = foot_z + pivot_1_z + normal_z*rise
-        twice_z = -2.0*z
-        slope_1_by_z = twice_inner_arm_1*sin_a1 - twice_z
+        twice_z = 2.0*z
+        slope_1_by_z = twice_z + twice_inner_arm_1*sin_a1
         part_of_slope_2_by_x = base_radius_2 + inner_arm_2*cos_a2
         slope_2_by_y = 2.0*(sin_azimuth_2_times_tcp_radius_2 + y) - part_of_slope_2_by_x*twice_sin_azimuth_2
-        slope_2_by_z = twice_inner_arm_2*sin_a2 - twice_z
+        slope_2_by_z = twice_z + twice_inner_arm_2*sin_a2
         part_of_slope_3_by_y = base_radius_3 + inner_arm_3*cos_a3
         slope_3_by_y = 2.0*(sin_azimuth_3_times_tcp_radius_3 + y) - part_of_slope_3_by_y*twice_sin_azimuth_3
-        slope_3_by_z = twice_inner_arm_3*sin_a3 - twice_z
-        part_of_determinant = slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z
+        slope_3_by_z = twice_z + twice_inner_arm_3*sin_a3
+        part_of_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y
         slope_2_by_x = 2.0*(cos_azimuth_2_times_tcp_radius_2 + x) - part_of_slope_2_by_x*twice_cos_azimuth_2
         slope_3_by_x = 2.0*(cos_azimuth_3_times_tcp_radius_3 + x) - part_of_slope_3_by_y*twice_cos_azimuth_3
-        part_of_determinant_2 = slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x
+        part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
         part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
-            part_of_determinant_3*slope_1_by_z - part_of_determinant*slope_1_by_x - part_of_determinant_2*slope_1_by_y
+            part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
         )
         # nothing controls the plate
         if not (abs(determinant) > part_of_determinant_divisor):
@@ -1372,12 +1366,12 @@ class DeltaP3CType3(OffsetKinematics):
         part_3 = one_by_determinant_divisor*slope_3_by_a3
         return (
             (
-                part*part_of_determinant,
+                -part*part_of_determinant,
                 part_2*(slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y),
                 (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
             ),
             (
-                part*part_of_determinant_2,
+                -part*part_of_determinant_2,
                 (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*part_2,
                 part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
             ),
@@ -1459,7 +1453,7 @@ class DeltaP3CType3(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
@@ -1492,7 +1486,7 @@ class DeltaP3CType3(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
@@ -1524,7 +1518,7 @@ class DeltaP3CType3(OffsetKinematics):
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
@@ -1552,30 +1546,24 @@ class DeltaP3CType3(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (along_a1*cos_swing_a1 + flange_z*sin_swing_a1)/effective_a1
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
-        rod_1_x = flange_x - pivot_1_x
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
-        rod_1_y = flange_y - pivot_1_y
+        rod_1_x = span_1_x - cos_a1*cos_azimuth_1_times_inner_arm_1
+        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1
         sin_a1 = (along_a1*sin_swing_a1 - flange_z*cos_swing_a1)/effective_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = flange_z - pivot_1_z
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (along_a2*cos_swing_a2 + flange_z*sin_swing_a2)/effective_a2
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
-        rod_2_x = flange_x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
-        rod_2_y = flange_y - pivot_2_y
+        rod_2_x = span_2_x - cos_a2*cos_azimuth_2_times_inner_arm_2
+        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - flange_z*cos_swing_a2)/effective_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = flange_z - pivot_2_z
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = (along_a3*cos_swing_a3 + flange_z*sin_swing_a3)/effective_a3
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
-        rod_3_x = flange_x - pivot_3_x
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
-        rod_3_y = flange_y - pivot_3_y
+        rod_3_x = span_3_x - cos_a3*cos_azimuth_3_times_inner_arm_3
+        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3
         sin_a3 = (along_a3*sin_swing_a3 - flange_z*cos_swing_a3)/effective_a3
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         rod_3_z = flange_z - pivot_3_z

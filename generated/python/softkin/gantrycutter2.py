@@ -447,11 +447,11 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         free_r = (ref_r - offset_r)*DEGREE
         cos_r = cos(free_r)
         sin_r = sin(free_r)
-        direction_r_times_sin_r = -direction_r*sin_r
-        tool_x = point_x*cos_r + direction_r_times_sin_r*point_y  # the point seen from the last moving joint
+        direction_r_times_sin_r = direction_r*sin_r
+        tool_x = point_x*cos_r - direction_r_times_sin_r*point_y  # the point seen from the last moving joint
         joint_x = x - tool_x  # joint_x: affine in the x equation
         axis_x = joint_x + offset_x
-        tool_y = point_y*cos_r - direction_r_times_sin_r*point_x  # the point seen from the last moving joint
+        tool_y = point_y*cos_r + direction_r_times_sin_r*point_x  # the point seen from the last moving joint
         joint_y = y - tool_y  # joint_y: affine in the y equation
         axis_y = joint_y + offset_y
         return (axis_x, axis_y, ref_r)

@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 23 additions, 21 multiplications, 6 divisions, 2 square roots, 4 sines
-    inverse: 48 additions, 34 multiplications, 14 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 189 additions, 136 multiplications, 56 divisions, 16 square roots, 8 sines
+    inverse: 46 additions, 34 multiplications, 14 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 181 additions, 136 multiplications, 56 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -487,16 +487,14 @@ class P2CType1(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/effective_a1
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
-        rod_1_x = x - pivot_1_x
+        rod_1_x = span_1_x + inner_arm*cos_a1
         sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (span_2_x*cos_swing_a2 + y*sin_swing_a2)/effective_a2
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
-        rod_2_x = x - pivot_2_x
+        rod_2_x = span_2_x - inner_arm*cos_a2
         sin_a2 = (span_2_x*sin_swing_a2 - y*cos_swing_a2)/effective_a2
         pivot_2_y = -inner_arm*sin_a2  # rod 2
         rod_2_y = y - pivot_2_y
@@ -655,14 +653,14 @@ class P2CType1(OffsetKinematics):
         foot_x = 0.5*apart_2_x
         rise = root(height_square/normal_square)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
-        twice_x = -2.0*x
-        slope_1_by_x = twice_inner_arm*cos_a1 - part_of_slope_1_by_x - twice_x
+        twice_x = 2.0*x
+        slope_1_by_x = twice_x + twice_inner_arm*cos_a1 - part_of_slope_1_by_x
         foot_y = 0.5*apart_2_y
         y = foot_y + pivot_1_y + apart_2_x*rise
-        twice_y = -2.0*y
-        slope_1_by_y = twice_inner_arm*sin_a1 - twice_y
-        slope_2_by_x = part_of_slope_1_by_x - twice_x - twice_inner_arm*cos_a2
-        slope_2_by_y = twice_inner_arm*sin_a2 - twice_y
+        twice_y = 2.0*y
+        slope_1_by_y = twice_y + twice_inner_arm*sin_a1
+        slope_2_by_x = part_of_slope_1_by_x + twice_x - twice_inner_arm*cos_a2
+        slope_2_by_y = twice_y + twice_inner_arm*sin_a2
         # of the closure by the position: zero in a type 2 singularity
         determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x
         # nothing controls the plate
@@ -670,7 +668,7 @@ class P2CType1(OffsetKinematics):
             return Status.IMPOSSIBLE
         slope_1_by_a1 = twice_inner_arm*((y - pivot_1_y)*cos_a1 + (pivot_1_x - x)*sin_a1)
         slope_1_by_a1_by_determinant = slope_1_by_a1/determinant
-        slope_2_by_a2 = twice_inner_arm*((y - pivot_2_y)*cos_a2 - (pivot_2_x - x)*sin_a2)
+        slope_2_by_a2 = twice_inner_arm*((y - pivot_2_y)*cos_a2 + (x - pivot_2_x)*sin_a2)
         slope_2_by_a2_by_determinant = slope_2_by_a2/determinant
         return (
             (-slope_1_by_a1_by_determinant*slope_2_by_y, slope_1_by_y*slope_2_by_a2_by_determinant),
@@ -761,16 +759,14 @@ class P2CType1(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - flange_y*sin_swing_a1)/effective_a1
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
-        rod_1_x = flange_x - pivot_1_x
+        rod_1_x = span_1_x + inner_arm*cos_a1
         sin_a1 = (flange_y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = flange_y - pivot_1_y
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (span_2_x*cos_swing_a2 + flange_y*sin_swing_a2)/effective_a2
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
-        rod_2_x = flange_x - pivot_2_x
+        rod_2_x = span_2_x - inner_arm*cos_a2
         sin_a2 = (span_2_x*sin_swing_a2 - flange_y*cos_swing_a2)/effective_a2
         pivot_2_y = -inner_arm*sin_a2  # rod 2
         rod_2_y = flange_y - pivot_2_y

@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 23 additions, 21 multiplications, 6 divisions, 2 square roots, 4 sines
-    inverse: 48 additions, 34 multiplications, 14 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 189 additions, 136 multiplications, 56 divisions, 16 square roots, 8 sines
+    inverse: 46 additions, 34 multiplications, 14 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 181 additions, 136 multiplications, 56 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -487,16 +487,14 @@ class P2CType2(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/effective_a1
-        pivot_1_x = part_of_pivot_1_x + inner_arm*cos_a1  # rod 1
-        rod_1_x = x - pivot_1_x
+        rod_1_x = span_1_x - inner_arm*cos_a1
         sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (span_2_x*cos_swing_a2 - y*sin_swing_a2)/effective_a2
-        pivot_2_x = inner_arm*cos_a2 - part_of_pivot_1_x  # rod 2
-        rod_2_x = x - pivot_2_x
+        rod_2_x = span_2_x - inner_arm*cos_a2
         sin_a2 = (y*cos_swing_a2 + span_2_x*sin_swing_a2)/effective_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
         rod_2_y = y - pivot_2_y
@@ -761,16 +759,14 @@ class P2CType2(OffsetKinematics):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - flange_y*sin_swing_a1)/effective_a1
-        pivot_1_x = part_of_pivot_1_x + inner_arm*cos_a1  # rod 1
-        rod_1_x = flange_x - pivot_1_x
+        rod_1_x = span_1_x - inner_arm*cos_a1
         sin_a1 = (flange_y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = flange_y - pivot_1_y
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (span_2_x*cos_swing_a2 - flange_y*sin_swing_a2)/effective_a2
-        pivot_2_x = inner_arm*cos_a2 - part_of_pivot_1_x  # rod 2
-        rod_2_x = flange_x - pivot_2_x
+        rod_2_x = span_2_x - inner_arm*cos_a2
         sin_a2 = (flange_y*cos_swing_a2 + span_2_x*sin_swing_a2)/effective_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
         rod_2_y = flange_y - pivot_2_y

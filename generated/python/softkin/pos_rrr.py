@@ -20,7 +20,7 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 26 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
+    forward: 26 additions, 26 multiplications, 4 divisions, 0 square roots, 8 sines
     inverse: 64 additions, 49 multiplications, 15 divisions, 5 square roots, 7 sines
     inverse, all 4 branches open: 253 additions, 196 multiplications, 60 divisions, 20 square roots, 28 sines
 
@@ -96,6 +96,8 @@ class Constants(NamedTuple):
     effective_q3_2: float
     rounding_q1: float
     size_q1_for_q3_2: float
+    d4_by_effective_q3_2: float
+    a3_by_effective_q3_2: float
     a2_squared: float
     size_q1_for_q3_2_times_rounding: float
     machine_scale_times_free_angle: float
@@ -105,8 +107,6 @@ class Constants(NamedTuple):
     twice_d3: float
     a2_plus_effective_q3_2: float
     a2_minus_effective_q3_2: float
-    d4_by_effective_q3_2: float
-    a3_by_effective_q3_2: float
     a2_times_shortest_link: float
     twice_a2: float
 
@@ -318,6 +318,8 @@ class PosRRR(OffsetKinematics):
         effective_q3_2 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
         size_q1_for_q3_2 = 2.0*abs(effective_q3_2)*a2
+        d4_by_effective_q3_2 = d4/effective_q3_2
+        a3_by_effective_q3_2 = a3/effective_q3_2
         a2_squared = a2*a2
         size_q1_for_q3_2_times_rounding = 1e-12*size_q1_for_q3_2
         machine_scale_times_free_angle = 1e-11*machine_scale
@@ -327,8 +329,6 @@ class PosRRR(OffsetKinematics):
         twice_d3 = 2.0*d3
         a2_plus_effective_q3_2 = a2 + effective_q3_2
         a2_minus_effective_q3_2 = a2 - effective_q3_2
-        d4_by_effective_q3_2 = d4/effective_q3_2
-        a3_by_effective_q3_2 = a3/effective_q3_2
         a2_times_shortest_link = 1e-9*a2
         twice_a2 = 2.0*a2
         return Constants(
@@ -339,14 +339,14 @@ class PosRRR(OffsetKinematics):
             highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3,
             upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
             single_a3=single_a3, mid_a3=mid_a3, machine_scale=machine_scale, effective_q3_2=effective_q3_2,
-            rounding_q1=rounding_q1, size_q1_for_q3_2=size_q1_for_q3_2, a2_squared=a2_squared,
+            rounding_q1=rounding_q1, size_q1_for_q3_2=size_q1_for_q3_2, d4_by_effective_q3_2=d4_by_effective_q3_2,
+            a3_by_effective_q3_2=a3_by_effective_q3_2, a2_squared=a2_squared,
             size_q1_for_q3_2_times_rounding=size_q1_for_q3_2_times_rounding,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
             machine_scale_squared_times_plane=machine_scale_squared_times_plane,
             machine_scale_times_rounding=machine_scale_times_rounding,
             a2_squared_plus_effective_q3_2_squared=a2_squared_plus_effective_q3_2_squared, twice_d3=twice_d3,
             a2_plus_effective_q3_2=a2_plus_effective_q3_2, a2_minus_effective_q3_2=a2_minus_effective_q3_2,
-            d4_by_effective_q3_2=d4_by_effective_q3_2, a3_by_effective_q3_2=a3_by_effective_q3_2,
             a2_times_shortest_link=a2_times_shortest_link, twice_a2=twice_a2,
         )
 
@@ -357,10 +357,11 @@ class PosRRR(OffsetKinematics):
         a1 = k.a1
         a2 = k.a2
         a3 = k.a3
+        a3_by_effective_q3_2 = k.a3_by_effective_q3_2
         d1 = k.d1
         d3 = k.d3
         d4 = k.d4
-        effective_q3_2 = k.effective_q3_2
+        d4_by_effective_q3_2 = k.d4_by_effective_q3_2
         machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
@@ -395,7 +396,7 @@ class PosRRR(OffsetKinematics):
         branch_arm = (x*cos_q1 + y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = (d4*cos_q3 - a3*sin_q3)/effective_q3_2
+        branch_elbow = d4_by_effective_q3_2*cos_q3 - a3_by_effective_q3_2*sin_q3
         return (
             (x, y, z),
             ((r11_at_q23, sin_q1, -r12_at_q23), (r21_at_q23, -cos_q1, -r22_at_q23), (cos_q23, 0.0, sin_q23)),
@@ -647,9 +648,10 @@ class PosRRR(OffsetKinematics):
         a1 = k.a1
         a2 = k.a2
         a3 = k.a3
+        a3_by_effective_q3_2 = k.a3_by_effective_q3_2
         d3 = k.d3
         d4 = k.d4
-        effective_q3_2 = k.effective_q3_2
+        d4_by_effective_q3_2 = k.d4_by_effective_q3_2
         machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
@@ -681,7 +683,7 @@ class PosRRR(OffsetKinematics):
         margin_point_on_axis_1 = (x*cos_q1 + y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = (d4*cos_q3 - a3*sin_q3)/effective_q3_2
+        margin_elbow = d4_by_effective_q3_2*cos_q3 - a3_by_effective_q3_2*sin_q3
         return (margin_point_on_axis_1, margin_elbow)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:

@@ -760,19 +760,18 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         free_a4 = (ref_a4 - offset_a4)*DEGREE
         cos_a4 = cos(free_a4)
         sin_a4 = sin(free_a4)
-        point_y_times_sin_a4 = -point_y*sin_a4
+        point_y_times_sin_a4 = point_y*sin_a4
         # the point seen from the last moving joint
         tool_x = (
-            link_length_2 + point_y_times_sin_a4 + (-2.0*point_y_times_sin_a4 if flange_down else 0.0)
-            + point_x*cos_a4
+            link_length_2 + (2.0*point_y_times_sin_a4 if flange_down else 0.0) + point_x*cos_a4 - point_y_times_sin_a4
         )
-        point_x_times_sin_a4 = -point_x*sin_a4
+        point_x_times_sin_a4 = point_x*sin_a4
         cos_a4_times_point_y = point_y*cos_a4
         # the point seen from the last moving joint
         tool_y = (
-            -cos_a4_times_point_y - point_x_times_sin_a4
+            point_x_times_sin_a4 - cos_a4_times_point_y
             if flange_down
-            else cos_a4_times_point_y - point_x_times_sin_a4
+            else cos_a4_times_point_y + point_x_times_sin_a4
         )
         effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # a2: its effective length is too short

@@ -583,7 +583,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        part_of_axis_a3 = -coupling_13*motor_a1 - coupling_23*motor_a2
+        part_of_axis_a3 = coupling_13*motor_a1 + coupling_23*motor_a2
         if turn_a3 != 0:
             near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3)
         else:
@@ -595,10 +595,10 @@ class SCCC(OffsetKinematics, TwistChoice):
             else:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE
+                open_a3 = offset_a3 + (free_a3 - part_of_axis_a3)/DEGREE
             near_a3 = open_a3
         # a3: what the sum a123 leaves; A3: its turn
-        axis_a3 = offset_a3 + (angle_heading + part_of_axis_a3 - angle_a1 - angle_a2)/DEGREE
+        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2 - part_of_axis_a3)/DEGREE
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)

@@ -145,16 +145,16 @@ class ArrayPrograms(Programs):
         slope_reach_tried = select(
             reach_tried > 0.0,
             (
-                -(-slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried - slope_wrist_z_tried*wrist_z_from_q1_tried)
+                (slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried + slope_wrist_z_tried*wrist_z_from_q1_tried)
                 /select(reach_tried > 0.0, reach_tried, 1.0)
             ),
             0.0,
         )
         slope_one_less_cos_q3_tried = (
-            -(part_of_one_less_cos_q3_tried_2 - part_of_one_less_cos_q3_tried)*slope_reach_tried
+            (part_of_one_less_cos_q3_tried - part_of_one_less_cos_q3_tried_2)*slope_reach_tried
         )
         slope_one_plus_cos_q3_tried = (
-            -(part_of_one_plus_cos_q3_tried - part_of_one_plus_cos_q3_tried_2)*slope_reach_tried
+            (part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried)*slope_reach_tried
         )
 
         def elsewhere_sum_q3_tried() -> Reals:
@@ -487,10 +487,10 @@ class ArrayPrograms(Programs):
             r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
             r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
             error_5 = (
-                -0.5
+                0.5
                 *(
-                    goal_r31*r11_at_q6 + goal_r32*r12_at_q6 + goal_r33*r13_at_q5 - goal_r11*r31_at_q6 - goal_r12*r32_at_q6
-                    - goal_r13*r33_at_q5
+                    goal_r11*r31_at_q6 + goal_r12*r32_at_q6 + goal_r13*r33_at_q5 - goal_r31*r11_at_q6 - goal_r32*r12_at_q6
+                    - goal_r33*r13_at_q5
                 )
             )
             error_6 = (
@@ -542,9 +542,9 @@ class ArrayPrograms(Programs):
             product_1_3 = (
                 rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5 + rate_1_6*rate_3_6
             )
-            rate_1_2_plus_rate_1_3 = -rate_1_2 - rate_1_3
-            product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 + rate_1_2_plus_rate_1_3*sin_q1
-            product_1_5 = r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6 - rate_1_2_plus_rate_1_3*cos_q1
+            rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
+            product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 - rate_1_2_plus_rate_1_3*sin_q1
+            product_1_5 = rate_1_2_plus_rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6
             product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23
             product_2_2 = (
                 1e-12 + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4 + rate_2_5*rate_2_5
@@ -553,9 +553,9 @@ class ArrayPrograms(Programs):
             product_2_3 = (
                 rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5 + rate_2_6*rate_3_6
             )
-            rate_2_2_plus_rate_2_3 = -rate_2_2 - rate_2_3
-            product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 + rate_2_2_plus_rate_2_3*sin_q1
-            product_2_5 = r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6 - rate_2_2_plus_rate_2_3*cos_q1
+            rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
+            product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 - rate_2_2_plus_rate_2_3*sin_q1
+            product_2_5 = rate_2_2_plus_rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6
             product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23
             product_3_3 = (
                 1e-12 + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5 + rate_3_6*rate_3_6
@@ -674,10 +674,11 @@ class ArrayPrograms(Programs):
         a1 = k.a1
         a2 = k.a2
         a3 = k.a3
+        a3_by_effective_q3_tried = k.a3_by_effective_q3_tried
         d1 = k.d1
         d4 = k.d4
+        d4_by_effective_q3_tried = k.d4_by_effective_q3_tried
         d6 = k.d6
-        effective_q3_tried = k.effective_q3_tried
         j6_offset_x = k.j6_offset_x
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
@@ -805,7 +806,7 @@ class ArrayPrograms(Programs):
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
-        margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_tried
+        margin_elbow_closed = a3_by_effective_q3_tried*sin_q3_closed + d4_by_effective_q3_tried*cos_q3_closed
 
         def elsewhere_branch_shoulder(
             cos_q1: Real, cos_q5: Real, sin_q1: Real, wrist_x_closed: Real, wrist_y_closed: Real,

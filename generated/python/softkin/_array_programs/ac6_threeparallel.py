@@ -108,8 +108,8 @@ class ArrayPrograms(Programs):
         y_at_q4 = y_at_q3 + a3*r21_at_q23
         y_at_q5 = y_at_q4 - d4*cos_q1
         y_at_q6 = y_at_q5 - d5*r22_at_q234
-        d6_times_r22_at_q5 = -d6*r22_at_q5
-        y = y_at_q6 - d6_times_r22_at_q5
+        d6_times_r22_at_q5 = d6*r22_at_q5
+        y = d6_times_r22_at_q5 + y_at_q6
         r32_at_q5 = -sin_q234*sin_q5
         sin_q2 = sin(q2)
         z_at_q3 = d1 + a2*sin_q2
@@ -130,7 +130,7 @@ class ArrayPrograms(Programs):
         r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6
         r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6
         wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
-        wrist_y = d6_times_r22_at_q5 + y
+        wrist_y = y - d6_times_r22_at_q5
         branch_shoulder = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         return (
@@ -268,9 +268,9 @@ class ArrayPrograms(Programs):
                     return (radius_q6_rate_q1_for_q3,)
 
                 radius_q6_rate_q1_for_q3 = (
-                    -(
-                        -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                        - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                    (
+                        r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                        + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                     )
                     /radius_q6_before_q1_for_q3
                 )
@@ -289,20 +289,20 @@ class ArrayPrograms(Programs):
 
             along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
             one_by_radius_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
-            part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
-            cos_q6_before_q1_for_q3 = -part_of_cos_q6_before_q1_for_q3
+            part_of_cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
+            cos_q6_before_q1_for_q3 = part_of_cos_q6_before_q1_for_q3
             across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
             part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
             sin_q6_before_q1_for_q3 = part_of_sin_q6_before_q1_for_q3
             radius_q6_rate_q1_for_q3 = (
-                -(
-                    -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                    - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                (
+                    r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                    + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                 )
                 /radius_q6_before_q1_for_q3
             )
             cos_q6_rate_q1_for_q3 = (
-                (along_q6_rate_q1_for_q3 + part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
+                (along_q6_rate_q1_for_q3 - part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
                 *one_by_radius_q6_before_q1_for_q3
             )
             sin_q6_rate_q1_for_q3 = (
@@ -679,7 +679,7 @@ class ArrayPrograms(Programs):
                 wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
                 wrist_y_from_q1_along = d5*r32
                 along_q6_of_q3 = (
-                    -2.0*(-wrist_x_from_q1_along*wrist_x_from_q1_fixed - wrist_y_from_q1_along*wrist_y_from_q1_fixed)
+                    2.0*(wrist_x_from_q1_along*wrist_x_from_q1_fixed + wrist_y_from_q1_along*wrist_y_from_q1_fixed)
                 )
                 wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
                 across_q6_of_q3 = (
@@ -1000,9 +1000,9 @@ class ArrayPrograms(Programs):
                     return (radius_q6_rate_q1_for_q3_left,)
 
                 radius_q6_rate_q1_for_q3_left = (
-                    -(
-                        -r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
-                        - r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                    (
+                        r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
+                        + r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
                     )
                     /radius_q6_before_q1_for_q3_left
                 )
@@ -1025,27 +1025,24 @@ class ArrayPrograms(Programs):
                 )
 
             one_by_radius_q6_before_q1_for_q3_left = 1.0/radius_q6_before_q1_for_q3_left
-            part_of_cos_q6_before_q1_for_q3_left_down = (
+            part_of_cos_q6_before_q1_for_q3_left_up = (
                 one_by_radius_q6_before_q1_for_q3_left*r21_from_q1_before_q1_for_q3_left
             )
-            cos_q6_before_q1_for_q3_left_down = -part_of_cos_q6_before_q1_for_q3_left_down
+            cos_q6_before_q1_for_q3_left_down = -part_of_cos_q6_before_q1_for_q3_left_up
             part_of_sin_q6_before_q1_for_q3_left_down = (
                 one_by_radius_q6_before_q1_for_q3_left*r22_from_q1_before_q1_for_q3_left
             )
             sin_q6_before_q1_for_q3_left_down = part_of_sin_q6_before_q1_for_q3_left_down
             radius_q6_rate_q1_for_q3_left = (
-                -(
-                    -r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
-                    - r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                (
+                    r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
+                    + r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
                 )
                 /radius_q6_before_q1_for_q3_left
             )
             cos_q6_rate_q1_for_q3_left_down = (
                 one_by_radius_q6_before_q1_for_q3_left
-                *(
-                    part_of_cos_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
-                    - r21_from_q1_rate_q1_for_q3_left
-                )
+                *(part_of_cos_q6_before_q1_for_q3_left_up*radius_q6_rate_q1_for_q3_left - r21_from_q1_rate_q1_for_q3_left)
             )
             sin_q6_rate_q1_for_q3_left_down = (
                 (
@@ -1057,10 +1054,7 @@ class ArrayPrograms(Programs):
             cos_q6_before_q1_for_q3_left_up = -cos_q6_before_q1_for_q3_left_down
             sin_q6_before_q1_for_q3_left_up = -part_of_sin_q6_before_q1_for_q3_left_down
             cos_q6_rate_q1_for_q3_left_up = (
-                (
-                    r21_from_q1_rate_q1_for_q3_left
-                    - part_of_cos_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
-                )
+                (r21_from_q1_rate_q1_for_q3_left - part_of_cos_q6_before_q1_for_q3_left_up*radius_q6_rate_q1_for_q3_left)
                 *one_by_radius_q6_before_q1_for_q3_left
             )
             sin_q6_rate_q1_for_q3_left_up = (
@@ -1412,11 +1406,11 @@ class ArrayPrograms(Programs):
                 radius_q6_before_q1_for_q3_right > 1e-11, radius_q6_before_q1_for_q3_right, 1.0,
             )
             one_by_radius_q6_before_q1_for_q3_right = 1.0/length_q6_before_q1_for_q3_right
-            part_of_cos_q6_before_q1_for_q3_right_down = (
+            part_of_cos_q6_before_q1_for_q3_right_up = (
                 one_by_radius_q6_before_q1_for_q3_right*r21_from_q1_before_q1_for_q3_right
             )
             cos_q6_before_q1_for_q3_right_down = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_cos_q6_before_q1_for_q3_right_up, cos_of_free_a6,
             )
             part_of_sin_q6_before_q1_for_q3_right_down = (
                 one_by_radius_q6_before_q1_for_q3_right*r22_from_q1_before_q1_for_q3_right
@@ -1453,7 +1447,7 @@ class ArrayPrograms(Programs):
                 across_q6_q1_for_q3_right*across_q6_q1_for_q3_right + along_q6_q1_for_q3_right*along_q6_q1_for_q3_right
             )
             cos_q6_before_q1_for_q3_right_up = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, part_of_cos_q6_before_q1_for_q3_right_up, cos_of_free_a6,
             )
             sin_q6_before_q1_for_q3_right_up = select(
                 radius_q6_before_q1_for_q3_right > 1e-11, -part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6,
@@ -2286,9 +2280,9 @@ class ArrayPrograms(Programs):
                 )
 
             radius_q6_rate_q1_for_q3_right = (
-                -(
-                    -r21_from_q1_before_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
-                    - r22_from_q1_before_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
+                (
+                    r21_from_q1_before_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
+                    + r22_from_q1_before_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
                 )
                 /radius_q6_before_q1_for_q3_right
             )
@@ -2306,7 +2300,7 @@ class ArrayPrograms(Programs):
             cos_q6_rate_q1_for_q3_right_down = (
                 one_by_radius_q6_before_q1_for_q3_right
                 *(
-                    part_of_cos_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
+                    part_of_cos_q6_before_q1_for_q3_right_up*radius_q6_rate_q1_for_q3_right
                     - r21_from_q1_rate_q1_for_q3_right
                 )
             )
@@ -2320,7 +2314,7 @@ class ArrayPrograms(Programs):
             cos_q6_rate_q1_for_q3_right_up = (
                 (
                     r21_from_q1_rate_q1_for_q3_right
-                    - part_of_cos_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
+                    - part_of_cos_q6_before_q1_for_q3_right_up*radius_q6_rate_q1_for_q3_right
                 )
                 *one_by_radius_q6_before_q1_for_q3_right
             )

@@ -160,16 +160,14 @@ class ArrayPrograms(Programs):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/divisor_a1
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
-        rod_1_x = x - pivot_1_x
+        rod_1_x = span_1_x + inner_arm*cos_a1
         sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
         cos_a2 = (span_2_x*cos_swing_a2 + y*sin_swing_a2)/divisor_a2
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
-        rod_2_x = x - pivot_2_x
+        rod_2_x = span_2_x - inner_arm*cos_a2
         sin_a2 = (span_2_x*sin_swing_a2 - y*cos_swing_a2)/divisor_a2
         pivot_2_y = -inner_arm*sin_a2  # rod 2
         rod_2_y = y - pivot_2_y
@@ -265,16 +263,14 @@ class ArrayPrograms(Programs):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1_outward = 2.0*root(sine_square_a1)/sum_a1
         cos_a1_outward = (span_1_x*cos_swing_a1 - y*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_outward = tcp_displacement_minus_displacement - inner_arm*cos_a1_outward  # rod 1
-        rod_1_x_outward = x - pivot_1_x_outward
+        rod_1_x_outward = span_1_x + inner_arm*cos_a1_outward
         sin_a1_outward = (y*cos_swing_a1 + span_1_x*sin_swing_a1_outward)/divisor_a1
         pivot_1_y_outward = -inner_arm*sin_a1_outward  # rod 1
         rod_1_y_outward = y - pivot_1_y_outward
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
         cos_a2_outward = (span_2_x*cos_swing_a2 - y*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_outward = inner_arm*cos_a2_outward - tcp_displacement_minus_displacement  # rod 2
-        rod_2_x_outward = x - pivot_2_x_outward
+        rod_2_x_outward = span_2_x - inner_arm*cos_a2_outward
         sin_a2_outward = (-y*cos_swing_a2 - span_2_x*sin_swing_a2_inward)/divisor_a2
         pivot_2_y_outward = -inner_arm*sin_a2_outward  # rod 2
         rod_2_y_outward = y - pivot_2_y_outward
@@ -290,8 +286,7 @@ class ArrayPrograms(Programs):
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)  # A2: its turn
         cos_a2_inward = (span_2_x*cos_swing_a2 + y*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_inward = inner_arm*cos_a2_inward - tcp_displacement_minus_displacement  # rod 2
-        rod_2_x_inward = x - pivot_2_x_inward
+        rod_2_x_inward = span_2_x - inner_arm*cos_a2_inward
         sin_a2_inward = (span_2_x*sin_swing_a2_inward - y*cos_swing_a2)/divisor_a2
         pivot_2_y_inward = -inner_arm*sin_a2_inward  # rod 2
         rod_2_y_inward = y - pivot_2_y_inward
@@ -302,8 +297,7 @@ class ArrayPrograms(Programs):
         refusal_outward_inward = select(type2_arms_aligned_outward_inward >= min_type2_margin, 0, 3)
         axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)  # A2: its turn
         cos_a1_inward = (span_1_x*cos_swing_a1 + y*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_inward = tcp_displacement_minus_displacement - inner_arm*cos_a1_inward  # rod 1
-        rod_1_x_inward = x - pivot_1_x_inward
+        rod_1_x_inward = span_1_x + inner_arm*cos_a1_inward
         sin_a1_inward = (y*cos_swing_a1 - span_1_x*sin_swing_a1_outward)/divisor_a1
         pivot_1_y_inward = -inner_arm*sin_a1_inward  # rod 1
         rod_1_y_inward = y - pivot_1_y_inward

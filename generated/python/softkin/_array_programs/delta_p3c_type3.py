@@ -221,7 +221,7 @@ class ArrayPrograms(Programs):
         effective_a1 = root(z_squared + along_a1*along_a1)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_1_times_shortest_link, Status.UNREACHABLE)
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         divisor_a1 = select(effective_a1 > inner_arm_1_times_shortest_link, effective_a1, 1.0)
@@ -242,7 +242,7 @@ class ArrayPrograms(Programs):
         effective_a2 = root(z_squared + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_2_times_shortest_link, Status.UNREACHABLE)
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         divisor_a2 = select(effective_a2 > inner_arm_2_times_shortest_link, effective_a2, 1.0)
@@ -263,7 +263,7 @@ class ArrayPrograms(Programs):
         effective_a3 = root(z_squared + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > inner_arm_3_times_shortest_link, Status.UNREACHABLE)
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         divisor_a3 = select(effective_a3 > inner_arm_3_times_shortest_link, effective_a3, 1.0)
@@ -281,30 +281,24 @@ class ArrayPrograms(Programs):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
         cos_a1 = (along_a1*cos_swing_a1 + z*sin_swing_a1)/divisor_a1
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
-        rod_1_x = x - pivot_1_x
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
-        rod_1_y = y - pivot_1_y
+        rod_1_x = span_1_x - cos_a1*cos_azimuth_1_times_inner_arm_1
+        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1
         sin_a1 = (along_a1*sin_swing_a1 - z*cos_swing_a1)/divisor_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
         cos_a2 = (along_a2*cos_swing_a2 + z*sin_swing_a2)/divisor_a2
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
-        rod_2_x = x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
-        rod_2_y = y - pivot_2_y
+        rod_2_x = span_2_x - cos_a2*cos_azimuth_2_times_inner_arm_2
+        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - z*cos_swing_a2)/divisor_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/sum_a3
         cos_a3 = (along_a3*cos_swing_a3 + z*sin_swing_a3)/divisor_a3
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
-        rod_3_x = x - pivot_3_x
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
-        rod_3_y = y - pivot_3_y
+        rod_3_x = span_3_x - cos_a3*cos_azimuth_3_times_inner_arm_3
+        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3
         sin_a3 = (along_a3*sin_swing_a3 - z*cos_swing_a3)/divisor_a3
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
@@ -410,7 +404,7 @@ class ArrayPrograms(Programs):
         effective_a1 = root(z_squared + along_a1*along_a1)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_1_times_shortest_link, Status.UNREACHABLE)
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         divisor_a1 = select(effective_a1 > inner_arm_1_times_shortest_link, effective_a1, 1.0)
@@ -431,7 +425,7 @@ class ArrayPrograms(Programs):
         effective_a2 = root(z_squared + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_2_times_shortest_link, Status.UNREACHABLE)
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         divisor_a2 = select(effective_a2 > inner_arm_2_times_shortest_link, effective_a2, 1.0)
@@ -452,7 +446,7 @@ class ArrayPrograms(Programs):
         effective_a3 = root(z_squared + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > inner_arm_3_times_shortest_link, Status.UNREACHABLE)
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         divisor_a3 = select(effective_a3 > inner_arm_3_times_shortest_link, effective_a3, 1.0)
@@ -470,30 +464,24 @@ class ArrayPrograms(Programs):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1_inward = 2.0*root(sine_square_a1)/sum_a1
         cos_a1_outward = (along_a1*cos_swing_a1 - z*sin_swing_a1_inward)/divisor_a1
-        pivot_1_x_outward = part_of_pivot_1_x + cos_a1_outward*cos_azimuth_1_times_inner_arm_1  # rod 1
-        rod_1_x_outward = x - pivot_1_x_outward
-        pivot_1_y_outward = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1_outward  # rod 1
-        rod_1_y_outward = y - pivot_1_y_outward
+        rod_1_x_outward = span_1_x - cos_a1_outward*cos_azimuth_1_times_inner_arm_1
+        rod_1_y_outward = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1_outward
         sin_a1_outward = (-along_a1*sin_swing_a1_inward - z*cos_swing_a1)/divisor_a1
         pivot_1_z_outward = -inner_arm_1*sin_a1_outward  # rod 1
         rod_1_z_outward = z - pivot_1_z_outward
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
         cos_a2_outward = (along_a2*cos_swing_a2 - z*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_outward = part_of_pivot_2_x + cos_a2_outward*cos_azimuth_2_times_inner_arm_2  # rod 2
-        rod_2_x_outward = x - pivot_2_x_outward
-        pivot_2_y_outward = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2_outward  # rod 2
-        rod_2_y_outward = y - pivot_2_y_outward
+        rod_2_x_outward = span_2_x - cos_a2_outward*cos_azimuth_2_times_inner_arm_2
+        rod_2_y_outward = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2_outward
         sin_a2_outward = (-along_a2*sin_swing_a2_inward - z*cos_swing_a2)/divisor_a2
         pivot_2_z_outward = -inner_arm_2*sin_a2_outward  # rod 2
         rod_2_z_outward = z - pivot_2_z_outward
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3_inward = 2.0*root(sine_square_a3)/sum_a3
         cos_a3_outward = (along_a3*cos_swing_a3 - z*sin_swing_a3_inward)/divisor_a3
-        pivot_3_x_outward = part_of_pivot_3_x + cos_a3_outward*cos_azimuth_3_times_inner_arm_3  # rod 3
-        rod_3_x_outward = x - pivot_3_x_outward
-        pivot_3_y_outward = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3_outward  # rod 3
-        rod_3_y_outward = y - pivot_3_y_outward
+        rod_3_x_outward = span_3_x - cos_a3_outward*cos_azimuth_3_times_inner_arm_3
+        rod_3_y_outward = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3_outward
         sin_a3_outward = (-along_a3*sin_swing_a3_inward - z*cos_swing_a3)/divisor_a3
         pivot_3_z_outward = -inner_arm_3*sin_a3_outward  # rod 3
         rod_3_z_outward = z - pivot_3_z_outward
@@ -519,10 +507,8 @@ class ArrayPrograms(Programs):
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)  # A3: its turn
         cos_a3_inward = (along_a3*cos_swing_a3 + z*sin_swing_a3_inward)/divisor_a3
-        pivot_3_x_inward = part_of_pivot_3_x + cos_a3_inward*cos_azimuth_3_times_inner_arm_3  # rod 3
-        rod_3_x_inward = x - pivot_3_x_inward
-        pivot_3_y_inward = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3_inward  # rod 3
-        rod_3_y_inward = y - pivot_3_y_inward
+        rod_3_x_inward = span_3_x - cos_a3_inward*cos_azimuth_3_times_inner_arm_3
+        rod_3_y_inward = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3_inward
         sin_a3_inward = (along_a3*sin_swing_a3_inward - z*cos_swing_a3)/divisor_a3
         pivot_3_z_inward = -inner_arm_3*sin_a3_inward  # rod 3
         rod_3_z_inward = z - pivot_3_z_inward
@@ -538,10 +524,8 @@ class ArrayPrograms(Programs):
         refusal_outward_outward_inward = select(type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0, 3)
         axis_a3_inward = nearest_period(offset_a3 + degrees(sin_a3_inward, cos_a3_inward), near_a3)  # A3: its turn
         cos_a2_inward = (along_a2*cos_swing_a2 + z*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_inward = part_of_pivot_2_x + cos_a2_inward*cos_azimuth_2_times_inner_arm_2  # rod 2
-        rod_2_x_inward = x - pivot_2_x_inward
-        pivot_2_y_inward = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2_inward  # rod 2
-        rod_2_y_inward = y - pivot_2_y_inward
+        rod_2_x_inward = span_2_x - cos_a2_inward*cos_azimuth_2_times_inner_arm_2
+        rod_2_y_inward = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2_inward
         sin_a2_inward = (along_a2*sin_swing_a2_inward - z*cos_swing_a2)/divisor_a2
         pivot_2_z_inward = -inner_arm_2*sin_a2_inward  # rod 2
         rod_2_z_inward = z - pivot_2_z_inward
@@ -567,10 +551,8 @@ class ArrayPrograms(Programs):
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = select(type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0, 3)
         cos_a1_inward = (along_a1*cos_swing_a1 + z*sin_swing_a1_inward)/divisor_a1
-        pivot_1_x_inward = part_of_pivot_1_x + cos_a1_inward*cos_azimuth_1_times_inner_arm_1  # rod 1
-        rod_1_x_inward = x - pivot_1_x_inward
-        pivot_1_y_inward = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1_inward  # rod 1
-        rod_1_y_inward = y - pivot_1_y_inward
+        rod_1_x_inward = span_1_x - cos_a1_inward*cos_azimuth_1_times_inner_arm_1
+        rod_1_y_inward = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1_inward
         sin_a1_inward = (along_a1*sin_swing_a1_inward - z*cos_swing_a1)/divisor_a1
         pivot_1_z_inward = -inner_arm_1*sin_a1_inward  # rod 1
         rod_1_z_inward = z - pivot_1_z_inward

@@ -49,19 +49,18 @@ class ArrayPrograms(Programs):
         assembly_sign = k.assembly_sign
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
-        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         part_of_along_centres = k.part_of_along_centres
         part_of_branch_w = k.part_of_branch_w
         part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
+        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         swap_xy = k.swap_xy
         status = passed(axes)
         # numbers of reasonable size
@@ -71,28 +70,32 @@ class ArrayPrograms(Programs):
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-
-        def elsewhere_centre_1_x(pivot_upper_x: Real, pivot_upper_y: Real) -> Reals:
-            centre_1_x = pivot_upper_x
-            centre_1_y = pivot_upper_y
-            return (centre_1_x, centre_1_y)
-
-        centre_1_x = pivot_upper_y
-        centre_1_y = pivot_upper_x
-        centre_1_x, centre_1_y = elsewhere(
-            swap_xy,
-            (centre_1_x, centre_1_y),
-            elsewhere_centre_1_x,
-            (pivot_upper_x, pivot_upper_y),
-        )
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
         sin_a2 = sin(a2)
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = -select(swap_xy, pivot_rear_y, pivot_rear_x)*link_length_2_by_link_length_3
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+
+        def elsewhere_centre_1_x(
+            pivot_upper_x: Real, pivot_upper_y: Real, scaled_pivot_rear_x: Real, scaled_pivot_rear_y: Real,
+        ) -> Reals:
+            centre_1_x = pivot_upper_x
+            centre_2_x = -scaled_pivot_rear_x
+            centre_1_y = pivot_upper_y
+            centre_2_y = -scaled_pivot_rear_y
+            return (centre_1_x, centre_2_x, centre_1_y, centre_2_y)
+
+        centre_1_x = pivot_upper_y
+        centre_2_x = -scaled_pivot_rear_y
+        centre_1_y = pivot_upper_x
+        centre_2_y = -scaled_pivot_rear_x
+        centre_1_x, centre_2_x, centre_1_y, centre_2_y = elsewhere(
+            swap_xy,
+            (centre_1_x, centre_2_x, centre_1_y, centre_2_y),
+            elsewhere_centre_1_x,
+            (pivot_upper_x, pivot_upper_y, scaled_pivot_rear_x, scaled_pivot_rear_y),
+        )
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -select(swap_xy, pivot_rear_x, pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -149,11 +152,8 @@ class ArrayPrograms(Programs):
         link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
-        link_length_2 = k.link_length_2
-        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
-        link_length_5 = k.link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane = k.machine_scale_times_plane
@@ -162,8 +162,9 @@ class ArrayPrograms(Programs):
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_branch_w = k.part_of_branch_w
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_along_a2 = k.part_of_along_a2
+        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
+        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
         single_a1 = k.single_a1
         single_a2 = k.single_a2
@@ -211,10 +212,10 @@ class ArrayPrograms(Programs):
         sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/sum_a1
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
-        along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
+        along_a2 = span_rear_x - part_of_along_a2*sin_a1
         cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
-        across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
+        across_a2 = part_of_along_a2*cos_a1 - span_rear_y
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > link_length_5_times_shortest_link, Status.UNREACHABLE)
@@ -234,31 +235,35 @@ class ArrayPrograms(Programs):
         require(status, absolute(cos_swing_a2) <= 1.0000000000005, Status.UNREACHABLE)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-
-        def elsewhere_centre_1_x(pivot_upper_x: Real, pivot_upper_y: Real) -> Reals:
-            centre_1_x = pivot_upper_x
-            centre_1_y = pivot_upper_y
-            return (centre_1_x, centre_1_y)
-
-        centre_1_x = pivot_upper_y
-        centre_1_y = pivot_upper_x
-        centre_1_x, centre_1_y = elsewhere(
-            swap_xy,
-            (centre_1_x, centre_1_y),
-            elsewhere_centre_1_x,
-            (pivot_upper_x, pivot_upper_y),
-        )
-        rod_1_x = x - centre_1_x
-        rod_1_y = y - centre_1_y
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/sum_a2
         cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
         sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = select(swap_xy, -pivot_rear_y, -pivot_rear_x)*link_length_2_by_link_length_3
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+
+        def elsewhere_centre_1_x(
+            pivot_upper_x: Real, pivot_upper_y: Real, scaled_pivot_rear_x: Real, scaled_pivot_rear_y: Real,
+        ) -> Reals:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
+            centre_2_x = -scaled_pivot_rear_x
+            centre_2_y = -scaled_pivot_rear_y
+            return (centre_1_x, centre_1_y, centre_2_x, centre_2_y)
+
+        centre_1_x = pivot_upper_y
+        centre_1_y = pivot_upper_x
+        centre_2_x = -scaled_pivot_rear_y
+        centre_2_y = -scaled_pivot_rear_x
+        centre_1_x, centre_1_y, centre_2_x, centre_2_y = elsewhere(
+            swap_xy,
+            (centre_1_x, centre_1_y, centre_2_x, centre_2_y),
+            elsewhere_centre_1_x,
+            (pivot_upper_x, pivot_upper_y, scaled_pivot_rear_x, scaled_pivot_rear_y),
+        )
+        rod_1_x = x - centre_1_x
+        rod_1_y = y - centre_1_y
         rod_2_x = x - centre_2_x
-        centre_2_y = select(swap_xy, -pivot_rear_x, -pivot_rear_y)*link_length_2_by_link_length_3
         rod_2_y = y - centre_2_y
         type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -298,11 +303,8 @@ class ArrayPrograms(Programs):
         link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
-        link_length_2 = k.link_length_2
-        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
-        link_length_5 = k.link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane = k.machine_scale_times_plane
@@ -311,8 +313,9 @@ class ArrayPrograms(Programs):
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_branch_w = k.part_of_branch_w
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_along_a2 = k.part_of_along_a2
+        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
+        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
         single_a1 = k.single_a1
         single_a2 = k.single_a2
@@ -362,34 +365,10 @@ class ArrayPrograms(Programs):
         pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
         cos_a1_left = (span_upper_y*cos_swing_a1 + span_upper_x*sin_swing_a1_right)/divisor_a1
         pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
-        sin_a1_right = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1_right)/divisor_a1
-        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
-        cos_a1_right = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1_right)/divisor_a1
-        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
-
-        def elsewhere_centre_1_x_left(
-            pivot_upper_x_left: Real, pivot_upper_x_right: Real, pivot_upper_y_left: Real, pivot_upper_y_right: Real,
-        ) -> Reals:
-            centre_1_x_left = pivot_upper_x_left
-            centre_1_y_left = pivot_upper_y_left
-            centre_1_x_right = pivot_upper_x_right
-            centre_1_y_right = pivot_upper_y_right
-            return (centre_1_x_left, centre_1_y_left, centre_1_x_right, centre_1_y_right)
-
-        centre_1_x_left = pivot_upper_y_left
-        centre_1_y_left = pivot_upper_x_left
-        centre_1_x_right = pivot_upper_y_right
-        centre_1_y_right = pivot_upper_x_right
-        centre_1_x_left, centre_1_y_left, centre_1_x_right, centre_1_y_right = elsewhere(
-            swap_xy,
-            (centre_1_x_left, centre_1_y_left, centre_1_x_right, centre_1_y_right),
-            elsewhere_centre_1_x_left,
-            (pivot_upper_x_left, pivot_upper_x_right, pivot_upper_y_left, pivot_upper_y_right),
-        )
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
-        along_a2_left = (link_length_2*span_rear_x - part_of_branch_w*sin_a1_left)/link_length_2
+        along_a2_left = span_rear_x - part_of_along_a2*sin_a1_left
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
-        across_a2_left = (part_of_branch_w*cos_a1_left - link_length_2*span_rear_y)/link_length_2
+        across_a2_left = part_of_along_a2*cos_a1_left - span_rear_y
         # effective length that the angle turns
         effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
         divisor_a2_left = select(effective_a2_left > link_length_5_times_shortest_link, effective_a2_left, 1.0)
@@ -407,9 +386,136 @@ class ArrayPrograms(Programs):
         sine_square_a2_left = one_less_cos_a2_left*one_plus_cos_a2_left  # the square of sine times scale
         sin_swing_a2_left_right = 2.0*root(sine_square_a2_left)/sum_a2_left
         cos_a2_left_left = (across_a2_left*sin_swing_a2_left_right + along_a2_left*cos_swing_a2_left)/divisor_a2_left
+        # rod rear
+        scaled_pivot_rear_x_left_left = (
+            part_of_scaled_pivot_rear_y*sin_a1_left - part_of_scaled_pivot_rear_y_2*cos_a2_left_left
+        )
         sin_a2_left_left = (across_a2_left*cos_swing_a2_left - along_a2_left*sin_swing_a2_left_right)/divisor_a2_left
+        # rod rear
+        scaled_pivot_rear_y_left_left = (
+            part_of_scaled_pivot_rear_y*cos_a1_left + part_of_scaled_pivot_rear_y_2*sin_a2_left_left
+        )
         cos_a2_left_right = (along_a2_left*cos_swing_a2_left - across_a2_left*sin_swing_a2_left_right)/divisor_a2_left
+        # rod rear
+        scaled_pivot_rear_x_left_right = (
+            part_of_scaled_pivot_rear_y*sin_a1_left - part_of_scaled_pivot_rear_y_2*cos_a2_left_right
+        )
         sin_a2_left_right = (across_a2_left*cos_swing_a2_left + along_a2_left*sin_swing_a2_left_right)/divisor_a2_left
+        # rod rear
+        scaled_pivot_rear_y_left_right = (
+            part_of_scaled_pivot_rear_y*cos_a1_left + part_of_scaled_pivot_rear_y_2*sin_a2_left_right
+        )
+        sin_a1_right = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1_right)/divisor_a1
+        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
+        cos_a1_right = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1_right)/divisor_a1
+        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
+        along_a2_right = span_rear_x - part_of_along_a2*sin_a1_right
+        across_a2_right = part_of_along_a2*cos_a1_right - span_rear_y
+        # effective length that the angle turns
+        effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
+        divisor_a2_right = select(effective_a2_right > link_length_5_times_shortest_link, effective_a2_right, 1.0)
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
+        one_less_cos_a2_right = (
+            (divisor_a2_right + link_length_4_plus_link_length_5)
+            *(divisor_a2_right + link_length_5_minus_link_length_4)
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a2_right = (
+            (link_length_4_plus_link_length_5 - divisor_a2_right)
+            *(divisor_a2_right - link_length_5_minus_link_length_4)
+        )
+        # twice the scale, with the rounding of its parts
+        both_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right
+        sum_a2_right = select(both_a2_right > 0.0, both_a2_right, 1.0)
+        cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/sum_a2_right
+        sine_square_a2_right = one_less_cos_a2_right*one_plus_cos_a2_right  # the square of sine times scale
+        sin_swing_a2_right_right = 2.0*root(sine_square_a2_right)/sum_a2_right
+        cos_a2_right_left = (
+            (across_a2_right*sin_swing_a2_right_right + along_a2_right*cos_swing_a2_right)/divisor_a2_right
+        )
+        # rod rear
+        scaled_pivot_rear_x_right_left = (
+            part_of_scaled_pivot_rear_y*sin_a1_right - part_of_scaled_pivot_rear_y_2*cos_a2_right_left
+        )
+        sin_a2_right_left = (
+            (across_a2_right*cos_swing_a2_right - along_a2_right*sin_swing_a2_right_right)/divisor_a2_right
+        )
+        # rod rear
+        scaled_pivot_rear_y_right_left = (
+            part_of_scaled_pivot_rear_y*cos_a1_right + part_of_scaled_pivot_rear_y_2*sin_a2_right_left
+        )
+        cos_a2_right_right = (
+            (along_a2_right*cos_swing_a2_right - across_a2_right*sin_swing_a2_right_right)/divisor_a2_right
+        )
+        # rod rear
+        scaled_pivot_rear_x_right_right = (
+            part_of_scaled_pivot_rear_y*sin_a1_right - part_of_scaled_pivot_rear_y_2*cos_a2_right_right
+        )
+        sin_a2_right_right = (
+            (across_a2_right*cos_swing_a2_right + along_a2_right*sin_swing_a2_right_right)/divisor_a2_right
+        )
+        # rod rear
+        scaled_pivot_rear_y_right_right = (
+            part_of_scaled_pivot_rear_y*cos_a1_right + part_of_scaled_pivot_rear_y_2*sin_a2_right_right
+        )
+
+        def elsewhere_centre_1_x_left(
+            pivot_upper_x_left: Real, pivot_upper_x_right: Real, pivot_upper_y_left: Real, pivot_upper_y_right: Real,
+            scaled_pivot_rear_x_left_left: Real, scaled_pivot_rear_x_left_right: Real,
+            scaled_pivot_rear_x_right_left: Real, scaled_pivot_rear_x_right_right: Real,
+            scaled_pivot_rear_y_left_left: Real, scaled_pivot_rear_y_left_right: Real,
+            scaled_pivot_rear_y_right_left: Real, scaled_pivot_rear_y_right_right: Real,
+        ) -> Reals:
+            centre_1_x_left = pivot_upper_x_left
+            centre_1_y_left = pivot_upper_y_left
+            centre_2_x_left_left = -scaled_pivot_rear_x_left_left
+            centre_2_y_left_left = -scaled_pivot_rear_y_left_left
+            centre_2_x_left_right = -scaled_pivot_rear_x_left_right
+            centre_2_y_left_right = -scaled_pivot_rear_y_left_right
+            centre_1_x_right = pivot_upper_x_right
+            centre_1_y_right = pivot_upper_y_right
+            centre_2_x_right_left = -scaled_pivot_rear_x_right_left
+            centre_2_y_right_left = -scaled_pivot_rear_y_right_left
+            centre_2_x_right_right = -scaled_pivot_rear_x_right_right
+            centre_2_y_right_right = -scaled_pivot_rear_y_right_right
+            return (
+                centre_1_x_left, centre_1_y_left, centre_2_x_left_left, centre_2_y_left_left, centre_2_x_left_right,
+                centre_2_y_left_right, centre_1_x_right, centre_1_y_right, centre_2_x_right_left, centre_2_y_right_left,
+                centre_2_x_right_right, centre_2_y_right_right,
+            )
+
+        centre_1_x_left = pivot_upper_y_left
+        centre_1_y_left = pivot_upper_x_left
+        centre_2_x_left_left = -scaled_pivot_rear_y_left_left
+        centre_2_y_left_left = -scaled_pivot_rear_x_left_left
+        centre_2_x_left_right = -scaled_pivot_rear_y_left_right
+        centre_2_y_left_right = -scaled_pivot_rear_x_left_right
+        centre_1_x_right = pivot_upper_y_right
+        centre_1_y_right = pivot_upper_x_right
+        centre_2_x_right_left = -scaled_pivot_rear_y_right_left
+        centre_2_y_right_left = -scaled_pivot_rear_x_right_left
+        centre_2_x_right_right = -scaled_pivot_rear_y_right_right
+        centre_2_y_right_right = -scaled_pivot_rear_x_right_right
+        found = elsewhere(
+            swap_xy,
+            (
+                centre_1_x_left, centre_1_y_left, centre_2_x_left_left, centre_2_y_left_left, centre_2_x_left_right,
+                centre_2_y_left_right, centre_1_x_right, centre_1_y_right, centre_2_x_right_left,
+                centre_2_y_right_left, centre_2_x_right_right, centre_2_y_right_right,
+            ),
+            elsewhere_centre_1_x_left,
+            (
+                pivot_upper_x_left, pivot_upper_x_right, pivot_upper_y_left, pivot_upper_y_right,
+                scaled_pivot_rear_x_left_left, scaled_pivot_rear_x_left_right, scaled_pivot_rear_x_right_left,
+                scaled_pivot_rear_x_right_right, scaled_pivot_rear_y_left_left, scaled_pivot_rear_y_left_right,
+                scaled_pivot_rear_y_right_left, scaled_pivot_rear_y_right_right,
+            ),
+        )
+        (
+            centre_1_x_left, centre_1_y_left, centre_2_x_left_left, centre_2_y_left_left, centre_2_x_left_right,
+            centre_2_y_left_right, centre_1_x_right, centre_1_y_right, centre_2_x_right_left,
+            centre_2_y_right_left, centre_2_x_right_right, centre_2_y_right_right,
+        ) = found
 
         def elsewhere_refusal_left_left() -> Reals:
             refusal_left_left = 3  # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -418,42 +524,14 @@ class ArrayPrograms(Programs):
 
         rod_1_x_left = x - centre_1_x_left
         rod_1_y_left = y - centre_1_y_left
-        # rod rear
-        pivot_rear_x_left_left = (
-            part_of_pivot_rear_x*sin_a1_left - pivot_upper_x_left - link_length_5*cos_a2_left_left
-        )
-        # rod rear
-        pivot_rear_y_left_left = (
-            part_of_pivot_rear_x*cos_a1_left + link_length_5*sin_a2_left_left - pivot_upper_y_left
-        )
-        centre_2_x_left_left = (
-            select(swap_xy, -pivot_rear_y_left_left, -pivot_rear_x_left_left)*link_length_2_by_link_length_3
-        )
         rod_2_x_left_left = x - centre_2_x_left_left
-        centre_2_y_left_left = (
-            select(swap_xy, -pivot_rear_x_left_left, -pivot_rear_y_left_left)*link_length_2_by_link_length_3
-        )
         rod_2_y_left_left = y - centre_2_y_left_left
         type2_arms_aligned_left_left = (
             part_of_type2_arms_aligned*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0, 3)
-        # rod rear
-        pivot_rear_x_left_right = (
-            part_of_pivot_rear_x*sin_a1_left - pivot_upper_x_left - link_length_5*cos_a2_left_right
-        )
-        # rod rear
-        pivot_rear_y_left_right = (
-            part_of_pivot_rear_x*cos_a1_left + link_length_5*sin_a2_left_right - pivot_upper_y_left
-        )
-        centre_2_x_left_right = (
-            select(swap_xy, -pivot_rear_y_left_right, -pivot_rear_x_left_right)*link_length_2_by_link_length_3
-        )
         rod_2_x_left_right = x - centre_2_x_left_right
-        centre_2_y_left_right = (
-            select(swap_xy, -pivot_rear_x_left_right, -pivot_rear_y_left_right)*link_length_2_by_link_length_3
-        )
         rod_2_y_left_right = y - centre_2_y_left_right
         type2_arms_aligned_left_right = (
             part_of_type2_arms_aligned*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
@@ -478,39 +556,6 @@ class ArrayPrograms(Programs):
         axis_a2_left_left = nearest_period(offset_a2 + degrees(sin_a2_left_left, cos_a2_left_left), near_a2)
         # A2: its turn
         axis_a2_left_right = nearest_period(offset_a2 + degrees(sin_a2_left_right, cos_a2_left_right), near_a2)
-        along_a2_right = (link_length_2*span_rear_x - part_of_branch_w*sin_a1_right)/link_length_2
-        across_a2_right = (part_of_branch_w*cos_a1_right - link_length_2*span_rear_y)/link_length_2
-        # effective length that the angle turns
-        effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
-        divisor_a2_right = select(effective_a2_right > link_length_5_times_shortest_link, effective_a2_right, 1.0)
-        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
-        one_less_cos_a2_right = (
-            (divisor_a2_right + link_length_4_plus_link_length_5)
-            *(divisor_a2_right + link_length_5_minus_link_length_4)
-        )
-        # 1 + cosine, times the scale
-        one_plus_cos_a2_right = (
-            (link_length_4_plus_link_length_5 - divisor_a2_right)
-            *(divisor_a2_right - link_length_5_minus_link_length_4)
-        )
-        # twice the scale, with the rounding of its parts
-        both_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right
-        sum_a2_right = select(both_a2_right > 0.0, both_a2_right, 1.0)
-        cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/sum_a2_right
-        sine_square_a2_right = one_less_cos_a2_right*one_plus_cos_a2_right  # the square of sine times scale
-        sin_swing_a2_right_right = 2.0*root(sine_square_a2_right)/sum_a2_right
-        cos_a2_right_left = (
-            (across_a2_right*sin_swing_a2_right_right + along_a2_right*cos_swing_a2_right)/divisor_a2_right
-        )
-        sin_a2_right_left = (
-            (across_a2_right*cos_swing_a2_right - along_a2_right*sin_swing_a2_right_right)/divisor_a2_right
-        )
-        cos_a2_right_right = (
-            (along_a2_right*cos_swing_a2_right - across_a2_right*sin_swing_a2_right_right)/divisor_a2_right
-        )
-        sin_a2_right_right = (
-            (across_a2_right*cos_swing_a2_right + along_a2_right*sin_swing_a2_right_right)/divisor_a2_right
-        )
 
         def elsewhere_refusal_right_left() -> Reals:
             refusal_right_left = 3  # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -519,42 +564,14 @@ class ArrayPrograms(Programs):
 
         rod_1_x_right = x - centre_1_x_right
         rod_1_y_right = y - centre_1_y_right
-        # rod rear
-        pivot_rear_x_right_left = (
-            part_of_pivot_rear_x*sin_a1_right - pivot_upper_x_right - link_length_5*cos_a2_right_left
-        )
-        # rod rear
-        pivot_rear_y_right_left = (
-            part_of_pivot_rear_x*cos_a1_right + link_length_5*sin_a2_right_left - pivot_upper_y_right
-        )
-        centre_2_x_right_left = (
-            select(swap_xy, -pivot_rear_y_right_left, -pivot_rear_x_right_left)*link_length_2_by_link_length_3
-        )
         rod_2_x_right_left = x - centre_2_x_right_left
-        centre_2_y_right_left = (
-            select(swap_xy, -pivot_rear_x_right_left, -pivot_rear_y_right_left)*link_length_2_by_link_length_3
-        )
         rod_2_y_right_left = y - centre_2_y_right_left
         type2_arms_aligned_right_left = (
             part_of_type2_arms_aligned*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0, 3)
-        # rod rear
-        pivot_rear_x_right_right = (
-            part_of_pivot_rear_x*sin_a1_right - pivot_upper_x_right - link_length_5*cos_a2_right_right
-        )
-        # rod rear
-        pivot_rear_y_right_right = (
-            part_of_pivot_rear_x*cos_a1_right + link_length_5*sin_a2_right_right - pivot_upper_y_right
-        )
-        centre_2_x_right_right = (
-            select(swap_xy, -pivot_rear_y_right_right, -pivot_rear_x_right_right)*link_length_2_by_link_length_3
-        )
         rod_2_x_right_right = x - centre_2_x_right_right
-        centre_2_y_right_right = (
-            select(swap_xy, -pivot_rear_x_right_right, -pivot_rear_y_right_right)*link_length_2_by_link_length_3
-        )
         rod_2_y_right_right = y - centre_2_y_right_right
         type2_arms_aligned_right_right = (
             part_of_type2_arms_aligned*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)

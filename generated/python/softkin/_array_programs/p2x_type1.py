@@ -82,10 +82,8 @@ class ArrayPrograms(Programs):
         x = foot_x + pivot_1_x - apart_2_y*rise
         foot_y = along_centres*apart_2_y
         y = foot_y + rail_y_1 + apart_2_x*rise
-        span_1_x = x - tcp_offset_1  # rod 1
-        branch_carriage_1 = (span_1_x - a1)/arm_length_1
-        span_2_x = tcp_offset_2 + x  # rod 2
-        branch_carriage_2 = (a2 - span_2_x)/arm_length_2
+        branch_carriage_1 = (x - pivot_1_x)/arm_length_1
+        branch_carriage_2 = (pivot_2_x - x)/arm_length_2
         return (
             (
                 (x, y, 0.0),
@@ -130,12 +128,10 @@ class ArrayPrograms(Programs):
         require(status, root_square_a2 >= -arm_length_2_squared_times_rounding, Status.UNREACHABLE)
         span_1_x = x - tcp_offset_1  # rod 1
         a1 = span_1_x - root(root_square_a1)*sigma_carriage_1
-        pivot_1_x = a1 + tcp_offset_1  # rod 1
-        rod_1_x = x - pivot_1_x
+        rod_1_x = span_1_x - a1
         span_2_x = tcp_offset_2 + x  # rod 2
         a2 = span_2_x + root(root_square_a2)*sigma_carriage_2
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
-        rod_2_x = x - pivot_2_x
+        rod_2_x = span_2_x - a2
         type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         require(status, type2_arms_aligned >= min_type2_margin, Status.UNREACHABLE)
@@ -192,27 +188,23 @@ class ArrayPrograms(Programs):
         require(status, root_square_a2 >= -arm_length_2_squared_times_rounding, Status.UNREACHABLE)
         span_1_x = x - tcp_offset_1  # rod 1
         a1_left = span_1_x - root(root_square_a1)
-        pivot_1_x_left = a1_left + tcp_offset_1  # rod 1
-        rod_1_x_left = x - pivot_1_x_left
+        rod_1_x_left = span_1_x - a1_left
         span_2_x = tcp_offset_2 + x  # rod 2
         a2_right = span_2_x + root(root_square_a2)
-        pivot_2_x_right = a2_right - tcp_offset_2  # rod 2
-        rod_2_x_right = x - pivot_2_x_right
+        rod_2_x_right = span_2_x - a2_right
         type2_arms_aligned_left_right = part_of_type2_arms_aligned*(rod_1_x_left*span_2_y - rod_2_x_right*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0, 3)
         axis_a1_left = a1_left + offset_a1
         axis_a2_right = a2_right + offset_a2
         a2_left = span_2_x - root(root_square_a2)
-        pivot_2_x_left = a2_left - tcp_offset_2  # rod 2
-        rod_2_x_left = x - pivot_2_x_left
+        rod_2_x_left = span_2_x - a2_left
         type2_arms_aligned_left_left = part_of_type2_arms_aligned*(rod_1_x_left*span_2_y - rod_2_x_left*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0, 3)
         axis_a2_left = a2_left + offset_a2
         a1_right = span_1_x + root(root_square_a1)
-        pivot_1_x_right = a1_right + tcp_offset_1  # rod 1
-        rod_1_x_right = x - pivot_1_x_right
+        rod_1_x_right = span_1_x - a1_right
         type2_arms_aligned_right_right = part_of_type2_arms_aligned*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0, 3)

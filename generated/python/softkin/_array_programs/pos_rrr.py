@@ -49,10 +49,11 @@ class ArrayPrograms(Programs):
         a1 = k.a1
         a2 = k.a2
         a3 = k.a3
+        a3_by_effective_q3_2 = k.a3_by_effective_q3_2
         d1 = k.d1
         d3 = k.d3
         d4 = k.d4
-        effective_q3_2 = k.effective_q3_2
+        d4_by_effective_q3_2 = k.d4_by_effective_q3_2
         machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
@@ -91,7 +92,7 @@ class ArrayPrograms(Programs):
         branch_arm = (x*cos_q1 + y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = (d4*cos_q3 - a3*sin_q3)/effective_q3_2
+        branch_elbow = d4_by_effective_q3_2*cos_q3 - a3_by_effective_q3_2*sin_q3
         return (
             (
                 (x, y, z),

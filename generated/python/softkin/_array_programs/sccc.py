@@ -191,7 +191,7 @@ class ArrayPrograms(Programs):
         axis_a2 = nearest_period(part_of_axis_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
         angle_heading = atan2(sin_heading, cos_heading)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        part_of_axis_a3 = -coupling_13*motor_a1 - coupling_23*motor_a2
+        part_of_axis_a3 = coupling_13*motor_a1 + coupling_23*motor_a2
 
         def elsewhere_near_a3(
             part_of_axis_a3: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real, single_a3: Truth,
@@ -202,7 +202,7 @@ class ArrayPrograms(Programs):
             def elsewhere_open_a3(free_a1: Real, part_of_axis_a3: Real, ref_a3: Real, ref_motor_a2: Real) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE  # A3: where its turn is open
+                open_a3 = offset_a3 + (free_a3 - part_of_axis_a3)/DEGREE  # A3: where its turn is open
                 return (open_a3,)
 
             open_a3 = mid_a3  # A3: where its turn is open
@@ -223,7 +223,7 @@ class ArrayPrograms(Programs):
             (part_of_axis_a3, ref_a1, ref_a2, ref_a3, single_a3),
         )
         # a3: what the sum a123 leaves; A3: its turn
-        axis_a3 = nearest_period(offset_a3 + (angle_heading + part_of_axis_a3 - angle_a1 - angle_a2)/DEGREE, near_a3)
+        axis_a3 = nearest_period(offset_a3 + (angle_heading - angle_a1 - angle_a2 - part_of_axis_a3)/DEGREE, near_a3)
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -403,11 +403,11 @@ class ArrayPrograms(Programs):
         axis_a2_right = nearest_period(part_of_axis_a2_right + angle_a2_right/DEGREE, near_a2_right)  # A2: its turn
         angle_heading = atan2(sin_heading, cos_heading)
         motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
-        part_of_axis_a3_right = -coupling_13*motor_a1_right - coupling_23*motor_a2_right
+        part_of_axis_a3_right = coupling_13*motor_a1_right + coupling_23*motor_a2_right
         angle_a2_left = atan2(-sin_a2_right, cos_a2)
         axis_a2_left = nearest_period(part_of_axis_a2_left + angle_a2_left/DEGREE, near_a2_left)  # A2: its turn
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
-        part_of_axis_a3_left = -coupling_13*motor_a1_left - coupling_23*motor_a2_left
+        part_of_axis_a3_left = coupling_13*motor_a1_left + coupling_23*motor_a2_left
 
         def elsewhere_near_a3_right(
             part_of_axis_a3_left: Real, part_of_axis_a3_right: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real,
@@ -421,8 +421,8 @@ class ArrayPrograms(Programs):
             ) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3_right = offset_a3 + (free_a3 + part_of_axis_a3_right)/DEGREE  # A3: where its turn is open
-                open_a3_left = offset_a3 + (free_a3 + part_of_axis_a3_left)/DEGREE  # A3: where its turn is open
+                open_a3_right = offset_a3 + (free_a3 - part_of_axis_a3_right)/DEGREE  # A3: where its turn is open
+                open_a3_left = offset_a3 + (free_a3 - part_of_axis_a3_left)/DEGREE  # A3: where its turn is open
                 return (open_a3_right, open_a3_left)
 
             open_a3_right = mid_a3  # A3: where its turn is open
@@ -447,12 +447,12 @@ class ArrayPrograms(Programs):
         )
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_right = nearest_period(
-            offset_a3 + (angle_heading + part_of_axis_a3_right - angle_a1_right - angle_a2_right)/DEGREE,
+            offset_a3 + (angle_heading - angle_a1_right - angle_a2_right - part_of_axis_a3_right)/DEGREE,
             near_a3_right,
         )
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_left = nearest_period(
-            offset_a3 + (angle_heading + part_of_axis_a3_left - angle_a1_left - angle_a2_left)/DEGREE, near_a3_left,
+            offset_a3 + (angle_heading - angle_a1_left - angle_a2_left - part_of_axis_a3_left)/DEGREE, near_a3_left,
         )
         return (
             ((axis_a1_right, axis_a2_right, axis_a3_right), status),

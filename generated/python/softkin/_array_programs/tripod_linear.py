@@ -43,19 +43,20 @@ class ArrayPrograms(Programs):
         arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         cos_rail_angle = k.cos_rail_angle
-        half_by_arm_length = k.half_by_arm_length
+        cos_rail_angle_by_arm_length = k.cos_rail_angle_by_arm_length
         half_sin_rail_angle = k.half_sin_rail_angle
         inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        one_by_arm_length = k.one_by_arm_length
+        part_of_branch_carriage_2 = k.part_of_branch_carriage_2
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
-        sin_rail_angle_times_root_of_3 = k.sin_rail_angle_times_root_of_3
-        twice_cos_rail_angle = k.twice_cos_rail_angle
+        sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -114,14 +115,12 @@ class ArrayPrograms(Programs):
         branch_carriage_1 = (a1 + z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
         span_2_x = x - part_of_pivot_2_x  # rod 2
-        part_of_branch_carriage_2 = span_2_x*sin_rail_angle - twice_cos_rail_angle*z
-        branch_carriage_2 = (
-            (2.0*a2 + span_2_y*sin_rail_angle_times_root_of_3 - part_of_branch_carriage_2)*half_by_arm_length
+        part_of_branch_carriage_2_2 = (
+            span_2_x*sin_rail_angle_times_half_by_arm_length - z*cos_rail_angle_by_arm_length
         )
+        branch_carriage_2 = a2*one_by_arm_length + part_of_branch_carriage_2*span_2_y - part_of_branch_carriage_2_2
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
-        branch_carriage_3 = (
-            (2.0*a3 - part_of_branch_carriage_2 - span_3_y*sin_rail_angle_times_root_of_3)*half_by_arm_length
-        )
+        branch_carriage_3 = a3*one_by_arm_length - part_of_branch_carriage_2_2 - part_of_branch_carriage_2*span_3_y
         return (
             (
                 (x, y, z),
@@ -151,19 +150,19 @@ class ArrayPrograms(Programs):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        one_minus_sin_rail_angle_squared = k.one_minus_sin_rail_angle_squared
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         part_of_root_square_a1 = k.part_of_root_square_a1
         part_of_root_square_a2 = k.part_of_root_square_a2
         part_of_root_square_a2_2 = k.part_of_root_square_a2_2
+        part_of_root_square_a2_3 = k.part_of_root_square_a2_3
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
         sin_rail_angle = k.sin_rail_angle
-        sin_rail_angle_squared = k.sin_rail_angle_squared
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
-        sin_rail_angle_squared_times_3_by_4 = k.sin_rail_angle_squared_times_3_by_4
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
@@ -171,63 +170,58 @@ class ArrayPrograms(Programs):
         z_minus_cos_rail_angle_squared_times_z = z - z*cos_rail_angle_squared
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z
-            - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x - y*y
+            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z - y*y
+            - one_minus_sin_rail_angle_squared*span_1_x*span_1_x
         )
         # rod 1 cannot reach
         require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
-        part_of_root_square_a2_3 = (
-            -z_minus_cos_rail_angle_squared_times_z - span_2_x*cos_rail_angle_times_sin_rail_angle
+        part_of_root_square_a2_4 = (
+            z_minus_cos_rail_angle_squared_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle
         )
-        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
+        part_of_root_square_a2_5 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + (part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)*z
-            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
-            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
+            arm_length_squared + (-part_of_root_square_a2_5 - part_of_root_square_a2_2*span_2_y)*span_2_x
+            + (part_of_root_square_a2*span_2_y - part_of_root_square_a2_4)*z
+            - part_of_root_square_a2_3*span_2_y*span_2_y
         )
         # rod 2 cannot reach
         require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
-            + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
-            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
+            arm_length_squared + (part_of_root_square_a2_2*span_3_y - part_of_root_square_a2_5)*span_2_x
+            + (-part_of_root_square_a2_4 - part_of_root_square_a2*span_3_y)*z
+            - part_of_root_square_a2_3*span_3_y*span_3_y
         )
         # rod 3 cannot reach
         require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         cos_rail_angle_times_z = z*cos_rail_angle
         middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
         a1 = root(root_square_a1)*sigma_carriage_1 - middle_a1
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
-        rod_1_x = x - pivot_1_x
+        rod_1_x = span_1_x + a1*sin_rail_angle
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
         part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle*span_2_x
         middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
         a2 = middle_a2 + root(root_square_a2)*sigma_carriage_2
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
-        rod_2_x = x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
-        rod_2_y = y - pivot_2_y
+        rod_2_x = span_2_x - a2*half_sin_rail_angle
+        rod_2_y = span_2_y + a2*part_of_pivot_2_y
         pivot_2_z = -a2*cos_rail_angle  # rod 2
         rod_2_z = z - pivot_2_z
         middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
         a3 = middle_a3 + root(root_square_a3)*sigma_carriage_3
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
-        rod_3_x = x - pivot_3_x
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
-        rod_3_y = y - pivot_3_y
+        rod_3_x = span_2_x - a3*half_sin_rail_angle
+        rod_3_y = span_3_y - a3*part_of_pivot_2_y
         pivot_3_z = -a3*cos_rail_angle  # rod 3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            -part_of_type2_rods_coplanar
+            part_of_type2_rods_coplanar
             *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-                + (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
+                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
+                + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*y
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
@@ -283,19 +277,19 @@ class ArrayPrograms(Programs):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        one_minus_sin_rail_angle_squared = k.one_minus_sin_rail_angle_squared
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         part_of_root_square_a1 = k.part_of_root_square_a1
         part_of_root_square_a2 = k.part_of_root_square_a2
         part_of_root_square_a2_2 = k.part_of_root_square_a2_2
+        part_of_root_square_a2_3 = k.part_of_root_square_a2_3
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
         sin_rail_angle = k.sin_rail_angle
-        sin_rail_angle_squared = k.sin_rail_angle_squared
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
-        sin_rail_angle_squared_times_3_by_4 = k.sin_rail_angle_squared_times_3_by_4
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
@@ -303,31 +297,31 @@ class ArrayPrograms(Programs):
         z_minus_cos_rail_angle_squared_times_z = z - z*cos_rail_angle_squared
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z
-            - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x - y*y
+            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z - y*y
+            - one_minus_sin_rail_angle_squared*span_1_x*span_1_x
         )
         # rod 1 cannot reach
         require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
-        part_of_root_square_a2_3 = (
-            -z_minus_cos_rail_angle_squared_times_z - span_2_x*cos_rail_angle_times_sin_rail_angle
+        part_of_root_square_a2_4 = (
+            z_minus_cos_rail_angle_squared_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle
         )
-        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
+        part_of_root_square_a2_5 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + (part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)*z
-            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
-            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
+            arm_length_squared + (-part_of_root_square_a2_5 - part_of_root_square_a2_2*span_2_y)*span_2_x
+            + (part_of_root_square_a2*span_2_y - part_of_root_square_a2_4)*z
+            - part_of_root_square_a2_3*span_2_y*span_2_y
         )
         # rod 2 cannot reach
         require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
-            + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
-            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
+            arm_length_squared + (part_of_root_square_a2_2*span_3_y - part_of_root_square_a2_5)*span_2_x
+            + (-part_of_root_square_a2_4 - part_of_root_square_a2*span_3_y)*z
+            - part_of_root_square_a2_3*span_3_y*span_3_y
         )
         # rod 3 cannot reach
         require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
@@ -342,33 +336,28 @@ class ArrayPrograms(Programs):
         cos_rail_angle_times_z = z*cos_rail_angle
         middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
         a1_below = root(root_square_a1) - middle_a1
-        pivot_1_x_below = inner_radius_minus_outer_radius - a1_below*sin_rail_angle  # rod 1
-        rod_1_x_below = x - pivot_1_x_below
+        rod_1_x_below = span_1_x + a1_below*sin_rail_angle
         pivot_1_z_below = -a1_below*cos_rail_angle  # rod 1
         rod_1_z_below = z - pivot_1_z_below
         part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle*span_2_x
         middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
         a2_below = middle_a2 + root(root_square_a2)
-        pivot_2_x_below = part_of_pivot_2_x + a2_below*half_sin_rail_angle  # rod 2
-        rod_2_x_below = x - pivot_2_x_below
-        pivot_2_y_below = part_of_pivot_2_y_2 - a2_below*part_of_pivot_2_y  # rod 2
-        rod_2_y_below = y - pivot_2_y_below
+        rod_2_x_below = span_2_x - a2_below*half_sin_rail_angle
+        rod_2_y_below = span_2_y + a2_below*part_of_pivot_2_y
         pivot_2_z_below = -a2_below*cos_rail_angle  # rod 2
         rod_2_z_below = z - pivot_2_z_below
         middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
         a3_below = middle_a3 + root(root_square_a3)
-        pivot_3_x_below = part_of_pivot_2_x + a3_below*half_sin_rail_angle  # rod 3
-        rod_3_x_below = x - pivot_3_x_below
-        pivot_3_y_below = a3_below*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
-        rod_3_y_below = y - pivot_3_y_below
+        rod_3_x_below = span_2_x - a3_below*half_sin_rail_angle
+        rod_3_y_below = span_3_y - a3_below*part_of_pivot_2_y
         pivot_3_z_below = -a3_below*cos_rail_angle  # rod 3
         rod_3_z_below = z - pivot_3_z_below
         type2_rods_coplanar_below_below_below = (
-            -part_of_type2_rods_coplanar
+            part_of_type2_rods_coplanar
             *(
-                (rod_2_z_below*rod_3_y_below - rod_2_y_below*rod_3_z_below)*rod_1_x_below
-                + (rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_y_below)*rod_1_z_below
-                + (rod_2_x_below*rod_3_z_below - rod_2_z_below*rod_3_x_below)*y
+                rod_1_x_below*(rod_2_y_below*rod_3_z_below - rod_2_z_below*rod_3_y_below)
+                + rod_1_z_below*(rod_2_x_below*rod_3_y_below - rod_2_y_below*rod_3_x_below)
+                + (rod_2_z_below*rod_3_x_below - rod_2_x_below*rod_3_z_below)*y
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
@@ -377,93 +366,88 @@ class ArrayPrograms(Programs):
         axis_a2_below = a2_below + offset_a2
         axis_a3_below = a3_below + offset_a3
         a3_above = middle_a3 - root(root_square_a3)
-        pivot_3_x_above = part_of_pivot_2_x + a3_above*half_sin_rail_angle  # rod 3
-        rod_3_x_above = x - pivot_3_x_above
-        pivot_3_y_above = a3_above*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
-        rod_3_y_above = y - pivot_3_y_above
+        rod_3_x_above = span_2_x - a3_above*half_sin_rail_angle
+        rod_3_y_above = span_3_y - a3_above*part_of_pivot_2_y
         pivot_3_z_above = -a3_above*cos_rail_angle  # rod 3
         rod_3_z_above = z - pivot_3_z_above
         type2_rods_coplanar_below_below_above = (
-            -part_of_type2_rods_coplanar
+            part_of_type2_rods_coplanar
             *(
-                (rod_2_z_below*rod_3_y_above - rod_2_y_below*rod_3_z_above)*rod_1_x_below
-                + (rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_y_above)*rod_1_z_below
-                + (rod_2_x_below*rod_3_z_above - rod_2_z_below*rod_3_x_above)*y
+                rod_1_x_below*(rod_2_y_below*rod_3_z_above - rod_2_z_below*rod_3_y_above)
+                + rod_1_z_below*(rod_2_x_below*rod_3_y_above - rod_2_y_below*rod_3_x_above)
+                + (rod_2_z_below*rod_3_x_above - rod_2_x_below*rod_3_z_above)*y
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0, 3)
         axis_a3_above = a3_above + offset_a3
         a2_above = middle_a2 - root(root_square_a2)
-        pivot_2_x_above = part_of_pivot_2_x + a2_above*half_sin_rail_angle  # rod 2
-        rod_2_x_above = x - pivot_2_x_above
-        pivot_2_y_above = part_of_pivot_2_y_2 - a2_above*part_of_pivot_2_y  # rod 2
-        rod_2_y_above = y - pivot_2_y_above
+        rod_2_x_above = span_2_x - a2_above*half_sin_rail_angle
+        rod_2_y_above = span_2_y + a2_above*part_of_pivot_2_y
         pivot_2_z_above = -a2_above*cos_rail_angle  # rod 2
         rod_2_z_above = z - pivot_2_z_above
         type2_rods_coplanar_below_above_below = (
-            -part_of_type2_rods_coplanar
+            part_of_type2_rods_coplanar
             *(
-                (rod_2_z_above*rod_3_y_below - rod_2_y_above*rod_3_z_below)*rod_1_x_below
-                + (rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_y_below)*rod_1_z_below
-                + (rod_2_x_above*rod_3_z_below - rod_2_z_above*rod_3_x_below)*y
+                rod_1_x_below*(rod_2_y_above*rod_3_z_below - rod_2_z_above*rod_3_y_below)
+                + rod_1_z_below*(rod_2_x_above*rod_3_y_below - rod_2_y_above*rod_3_x_below)
+                + (rod_2_z_above*rod_3_x_below - rod_2_x_above*rod_3_z_below)*y
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0, 3)
         axis_a2_above = a2_above + offset_a2
         type2_rods_coplanar_below_above_above = (
-            -part_of_type2_rods_coplanar
+            part_of_type2_rods_coplanar
             *(
-                (rod_2_z_above*rod_3_y_above - rod_2_y_above*rod_3_z_above)*rod_1_x_below
-                + (rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_y_above)*rod_1_z_below
-                + (rod_2_x_above*rod_3_z_above - rod_2_z_above*rod_3_x_above)*y
+                rod_1_x_below*(rod_2_y_above*rod_3_z_above - rod_2_z_above*rod_3_y_above)
+                + rod_1_z_below*(rod_2_x_above*rod_3_y_above - rod_2_y_above*rod_3_x_above)
+                + (rod_2_z_above*rod_3_x_above - rod_2_x_above*rod_3_z_above)*y
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0, 3)
         a1_above = -middle_a1 - root(root_square_a1)
-        pivot_1_x_above = inner_radius_minus_outer_radius - a1_above*sin_rail_angle  # rod 1
-        rod_1_x_above = x - pivot_1_x_above
+        rod_1_x_above = span_1_x + a1_above*sin_rail_angle
         pivot_1_z_above = -a1_above*cos_rail_angle  # rod 1
         rod_1_z_above = z - pivot_1_z_above
         type2_rods_coplanar_above_below_below = (
-            -part_of_type2_rods_coplanar
+            part_of_type2_rods_coplanar
             *(
-                (rod_2_z_below*rod_3_y_below - rod_2_y_below*rod_3_z_below)*rod_1_x_above
-                + (rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_y_below)*rod_1_z_above
-                + (rod_2_x_below*rod_3_z_below - rod_2_z_below*rod_3_x_below)*y
+                rod_1_x_above*(rod_2_y_below*rod_3_z_below - rod_2_z_below*rod_3_y_below)
+                + rod_1_z_above*(rod_2_x_below*rod_3_y_below - rod_2_y_below*rod_3_x_below)
+                + (rod_2_z_below*rod_3_x_below - rod_2_x_below*rod_3_z_below)*y
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0, 3)
         axis_a1_above = a1_above + offset_a1
         type2_rods_coplanar_above_below_above = (
-            -part_of_type2_rods_coplanar
+            part_of_type2_rods_coplanar
             *(
-                (rod_2_z_below*rod_3_y_above - rod_2_y_below*rod_3_z_above)*rod_1_x_above
-                + (rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_y_above)*rod_1_z_above
-                + (rod_2_x_below*rod_3_z_above - rod_2_z_below*rod_3_x_above)*y
+                rod_1_x_above*(rod_2_y_below*rod_3_z_above - rod_2_z_below*rod_3_y_above)
+                + rod_1_z_above*(rod_2_x_below*rod_3_y_above - rod_2_y_below*rod_3_x_above)
+                + (rod_2_z_below*rod_3_x_above - rod_2_x_below*rod_3_z_above)*y
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0, 3)
         type2_rods_coplanar_above_above_below = (
-            -part_of_type2_rods_coplanar
+            part_of_type2_rods_coplanar
             *(
-                (rod_2_z_above*rod_3_y_below - rod_2_y_above*rod_3_z_below)*rod_1_x_above
-                + (rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_y_below)*rod_1_z_above
-                + (rod_2_x_above*rod_3_z_below - rod_2_z_above*rod_3_x_below)*y
+                rod_1_x_above*(rod_2_y_above*rod_3_z_below - rod_2_z_above*rod_3_y_below)
+                + rod_1_z_above*(rod_2_x_above*rod_3_y_below - rod_2_y_above*rod_3_x_below)
+                + (rod_2_z_above*rod_3_x_below - rod_2_x_above*rod_3_z_below)*y
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0, 3)
         type2_rods_coplanar_above_above_above = (
-            -part_of_type2_rods_coplanar
+            part_of_type2_rods_coplanar
             *(
-                (rod_2_z_above*rod_3_y_above - rod_2_y_above*rod_3_z_above)*rod_1_x_above
-                + (rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_y_above)*rod_1_z_above
-                + (rod_2_x_above*rod_3_z_above - rod_2_z_above*rod_3_x_above)*y
+                rod_1_x_above*(rod_2_y_above*rod_3_z_above - rod_2_z_above*rod_3_y_above)
+                + rod_1_z_above*(rod_2_x_above*rod_3_y_above - rod_2_y_above*rod_3_x_above)
+                + (rod_2_z_above*rod_3_x_above - rod_2_x_above*rod_3_z_above)*y
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate

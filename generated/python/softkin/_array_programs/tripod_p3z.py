@@ -179,11 +179,11 @@ class ArrayPrograms(Programs):
         a3 = z + root(root_square_a3)*sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z - rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y)
-                - (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
+            -part_of_type2_rods_coplanar
+            *(
+                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
             )
-            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         require(status, type2_rods_coplanar >= min_type2_margin, Status.UNREACHABLE)
@@ -270,12 +270,12 @@ class ArrayPrograms(Programs):
         a3_above = z + root(root_square_a3)
         rod_3_z_above = z - a3_above
         type2_rods_coplanar_above_above_above = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
+            -part_of_type2_rods_coplanar
+            *(
+                (rod_2_z_above*rod_3_y - rod_2_y*rod_3_z_above)*rod_1_x
+                + rod_1_y*(rod_2_x*rod_3_z_above - rod_2_z_above*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
             )
-            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = select(type2_rods_coplanar_above_above_above >= min_type2_margin, 0, 3)
@@ -285,12 +285,12 @@ class ArrayPrograms(Programs):
         a3_below = z - root(root_square_a3)
         rod_3_z_below = z - a3_below
         type2_rods_coplanar_above_above_below = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
+            -part_of_type2_rods_coplanar
+            *(
+                (rod_2_z_above*rod_3_y - rod_2_y*rod_3_z_below)*rod_1_x
+                + rod_1_y*(rod_2_x*rod_3_z_below - rod_2_z_above*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
             )
-            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0, 3)
@@ -298,66 +298,66 @@ class ArrayPrograms(Programs):
         a2_below = z - root(root_square_a2)
         rod_2_z_below = z - a2_below
         type2_rods_coplanar_above_below_above = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
+            -part_of_type2_rods_coplanar
+            *(
+                (rod_2_z_below*rod_3_y - rod_2_y*rod_3_z_above)*rod_1_x
+                + rod_1_y*(rod_2_x*rod_3_z_above - rod_2_z_below*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
             )
-            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0, 3)
         axis_a2_below = a2_below + offset_a2
         type2_rods_coplanar_above_below_below = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
+            -part_of_type2_rods_coplanar
+            *(
+                (rod_2_z_below*rod_3_y - rod_2_y*rod_3_z_below)*rod_1_x
+                + rod_1_y*(rod_2_x*rod_3_z_below - rod_2_z_below*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
             )
-            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0, 3)
         a1_below = z - root(root_square_a1)
         rod_1_z_below = z - a1_below
         type2_rods_coplanar_below_above_above = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
+            -part_of_type2_rods_coplanar
+            *(
+                (rod_2_z_above*rod_3_y - rod_2_y*rod_3_z_above)*rod_1_x
+                + rod_1_y*(rod_2_x*rod_3_z_above - rod_2_z_above*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
             )
-            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0, 3)
         axis_a1_below = a1_below + offset_a1
         type2_rods_coplanar_below_above_below = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
+            -part_of_type2_rods_coplanar
+            *(
+                (rod_2_z_above*rod_3_y - rod_2_y*rod_3_z_below)*rod_1_x
+                + rod_1_y*(rod_2_x*rod_3_z_below - rod_2_z_above*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
             )
-            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0, 3)
         type2_rods_coplanar_below_below_above = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
+            -part_of_type2_rods_coplanar
+            *(
+                (rod_2_z_below*rod_3_y - rod_2_y*rod_3_z_above)*rod_1_x
+                + rod_1_y*(rod_2_x*rod_3_z_above - rod_2_z_below*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
             )
-            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0, 3)
         type2_rods_coplanar_below_below_below = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
+            -part_of_type2_rods_coplanar
+            *(
+                (rod_2_z_below*rod_3_y - rod_2_y*rod_3_z_below)*rod_1_x
+                + rod_1_y*(rod_2_x*rod_3_z_below - rod_2_z_below*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
             )
-            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = select(type2_rods_coplanar_below_below_below >= min_type2_margin, 0, 3)

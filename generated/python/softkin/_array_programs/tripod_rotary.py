@@ -128,7 +128,7 @@ class ArrayPrograms(Programs):
         root_of_3_2 = root(3.0)
         branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
         span_3_y = part_of_pivot_2_y + y  # rod 3
-        branch_knee_3 = ((-span_2_x - root_of_3_2*span_3_y)*sin_a3 - 2.0*span_1_z*cos_a3)*half_by_arm_length_2
+        branch_knee_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)*half_by_arm_length_2
         return (
             (
                 (x, y, z),
@@ -212,7 +212,7 @@ class ArrayPrograms(Programs):
         require(status, effective_a2 > part_of_divisor_a2, Status.UNREACHABLE)
         part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
+        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y)*y - part_of_scaled_cosine_a2
         divisor_a2 = select(effective_a2 > part_of_divisor_a2, effective_a2, 1.0)
         arm_length_1_times_effective_a2 = arm_length_1*divisor_a2
         # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
@@ -243,31 +243,23 @@ class ArrayPrograms(Programs):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/divisor_a1
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
-        rod_1_x = x - pivot_1_x
+        rod_1_x = span_1_x + arm_length_1*cos_a1
         sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
-        rod_1_z = z - pivot_1_z
+        rod_1_z = span_1_z + arm_length_1*sin_a1
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
         cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/divisor_a2
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
-        rod_2_x = x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
-        rod_2_y = y - pivot_2_y
+        rod_2_x = span_2_x - half_arm_length_1*cos_a2
+        rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/divisor_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        rod_2_z = z - pivot_2_z
+        rod_2_z = span_1_z + arm_length_1*sin_a2
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/sum_a3
         cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/divisor_a3
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
-        rod_3_x = x - pivot_3_x
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
-        rod_3_y = y - pivot_3_y
+        rod_3_x = span_2_x - half_arm_length_1*cos_a3
+        rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half*cos_a3
         sin_a3 = (along_a3*sin_swing_a3 - across_a2*cos_swing_a3)/divisor_a3
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        rod_3_z = z - pivot_3_z
+        rod_3_z = span_1_z + arm_length_1*sin_a3
         type2_rods_coplanar = (
             -part_of_type2_rods_coplanar
             *(
@@ -388,7 +380,7 @@ class ArrayPrograms(Programs):
         require(status, effective_a2 > part_of_divisor_a2, Status.UNREACHABLE)
         part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
+        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y)*y - part_of_scaled_cosine_a2
         divisor_a2 = select(effective_a2 > part_of_divisor_a2, effective_a2, 1.0)
         arm_length_1_times_effective_a2 = arm_length_1*divisor_a2
         # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
@@ -427,31 +419,23 @@ class ArrayPrograms(Programs):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1_outward = 2.0*root(sine_square_a1)/sum_a1
         cos_a1_outward = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_outward = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1_outward  # rod 1
-        rod_1_x_outward = x - pivot_1_x_outward
+        rod_1_x_outward = span_1_x + arm_length_1*cos_a1_outward
         sin_a1_outward = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1_outward)/divisor_a1
-        pivot_1_z_outward = fixed_length_2 - arm_length_1*sin_a1_outward  # rod 1
-        rod_1_z_outward = z - pivot_1_z_outward
+        rod_1_z_outward = span_1_z + arm_length_1*sin_a1_outward
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
         cos_a2_outward = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_outward = part_of_pivot_2_x + half_arm_length_1*cos_a2_outward  # rod 2
-        rod_2_x_outward = x - pivot_2_x_outward
-        pivot_2_y_outward = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2_outward  # rod 2
-        rod_2_y_outward = y - pivot_2_y_outward
+        rod_2_x_outward = span_2_x - half_arm_length_1*cos_a2_outward
+        rod_2_y_outward = span_2_y + arm_length_1_times_root_of_3_times_half*cos_a2_outward
         sin_a2_outward = (-across_a2*cos_swing_a2 - along_a2*sin_swing_a2_inward)/divisor_a2
-        pivot_2_z_outward = fixed_length_2 - arm_length_1*sin_a2_outward  # rod 2
-        rod_2_z_outward = z - pivot_2_z_outward
+        rod_2_z_outward = span_1_z + arm_length_1*sin_a2_outward
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3_inward = 2.0*root(sine_square_a3)/sum_a3
         cos_a3_outward = (along_a3*cos_swing_a3 - across_a2*sin_swing_a3_inward)/divisor_a3
-        pivot_3_x_outward = part_of_pivot_2_x + half_arm_length_1*cos_a3_outward  # rod 3
-        rod_3_x_outward = x - pivot_3_x_outward
-        pivot_3_y_outward = arm_length_1_times_root_of_3_times_half*cos_a3_outward - part_of_pivot_2_y  # rod 3
-        rod_3_y_outward = y - pivot_3_y_outward
+        rod_3_x_outward = span_2_x - half_arm_length_1*cos_a3_outward
+        rod_3_y_outward = span_3_y - arm_length_1_times_root_of_3_times_half*cos_a3_outward
         sin_a3_outward = (-across_a2*cos_swing_a3 - along_a3*sin_swing_a3_inward)/divisor_a3
-        pivot_3_z_outward = fixed_length_2 - arm_length_1*sin_a3_outward  # rod 3
-        rod_3_z_outward = z - pivot_3_z_outward
+        rod_3_z_outward = span_1_z + arm_length_1*sin_a3_outward
         type2_rods_coplanar_outward_outward_outward = (
             -part_of_type2_rods_coplanar
             *(
@@ -474,13 +458,10 @@ class ArrayPrograms(Programs):
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)  # A3: its turn
         cos_a3_inward = (across_a2*sin_swing_a3_inward + along_a3*cos_swing_a3)/divisor_a3
-        pivot_3_x_inward = part_of_pivot_2_x + half_arm_length_1*cos_a3_inward  # rod 3
-        rod_3_x_inward = x - pivot_3_x_inward
-        pivot_3_y_inward = arm_length_1_times_root_of_3_times_half*cos_a3_inward - part_of_pivot_2_y  # rod 3
-        rod_3_y_inward = y - pivot_3_y_inward
+        rod_3_x_inward = span_2_x - half_arm_length_1*cos_a3_inward
+        rod_3_y_inward = span_3_y - arm_length_1_times_root_of_3_times_half*cos_a3_inward
         sin_a3_inward = (along_a3*sin_swing_a3_inward - across_a2*cos_swing_a3)/divisor_a3
-        pivot_3_z_inward = fixed_length_2 - arm_length_1*sin_a3_inward  # rod 3
-        rod_3_z_inward = z - pivot_3_z_inward
+        rod_3_z_inward = span_1_z + arm_length_1*sin_a3_inward
         type2_rods_coplanar_outward_outward_inward = (
             -part_of_type2_rods_coplanar
             *(
@@ -493,13 +474,10 @@ class ArrayPrograms(Programs):
         refusal_outward_outward_inward = select(type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0, 3)
         axis_a3_inward = nearest_period(offset_a3 + degrees(sin_a3_inward, cos_a3_inward), near_a3)  # A3: its turn
         cos_a2_inward = (across_a2*sin_swing_a2_inward + along_a2*cos_swing_a2)/divisor_a2
-        pivot_2_x_inward = part_of_pivot_2_x + half_arm_length_1*cos_a2_inward  # rod 2
-        rod_2_x_inward = x - pivot_2_x_inward
-        pivot_2_y_inward = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2_inward  # rod 2
-        rod_2_y_inward = y - pivot_2_y_inward
+        rod_2_x_inward = span_2_x - half_arm_length_1*cos_a2_inward
+        rod_2_y_inward = span_2_y + arm_length_1_times_root_of_3_times_half*cos_a2_inward
         sin_a2_inward = (along_a2*sin_swing_a2_inward - across_a2*cos_swing_a2)/divisor_a2
-        pivot_2_z_inward = fixed_length_2 - arm_length_1*sin_a2_inward  # rod 2
-        rod_2_z_inward = z - pivot_2_z_inward
+        rod_2_z_inward = span_1_z + arm_length_1*sin_a2_inward
         type2_rods_coplanar_outward_inward_outward = (
             -part_of_type2_rods_coplanar
             *(
@@ -522,11 +500,9 @@ class ArrayPrograms(Programs):
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = select(type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0, 3)
         cos_a1_inward = (span_1_x*cos_swing_a1 + span_1_z*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_inward = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1_inward  # rod 1
-        rod_1_x_inward = x - pivot_1_x_inward
+        rod_1_x_inward = span_1_x + arm_length_1*cos_a1_inward
         sin_a1_inward = (span_1_z*cos_swing_a1 - span_1_x*sin_swing_a1_outward)/divisor_a1
-        pivot_1_z_inward = fixed_length_2 - arm_length_1*sin_a1_inward  # rod 1
-        rod_1_z_inward = z - pivot_1_z_inward
+        rod_1_z_inward = span_1_z + arm_length_1*sin_a1_inward
         type2_rods_coplanar_inward_outward_outward = (
             -part_of_type2_rods_coplanar
             *(
