@@ -167,8 +167,13 @@ def _errors() -> list[sp.Expr]:
     return [*places, *((turn[i, j] - turn[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0)))]
 
 
-def _without_unit(condition: sp.Basic) -> sp.Expr:
-    """How much more than its bound a radicand is, over what its bound is `BOUNDARY` of: a number, whatever the unit of length."""
+def _room(condition: sp.Basic) -> sp.Expr:
+    """How far a condition is from refusing, a number without a unit: 1 - c^2 of a cosine c that is at most 1 in size;
+    of a radicand how much more than its bound it is, over what its bound is `BOUNDARY` of.
+    """
+    if isinstance(condition, sp.Le):
+        (cosine_value,) = condition.lhs.args
+        return 1 + BOUNDARY - cosine_value**2
     radicand, bound = condition.args
     return radicand / (-bound / BOUNDARY).as_coeff_Mul()[1] + BOUNDARY
 
@@ -178,7 +183,7 @@ def trial_of(
 ) -> Trial:
     """A trial of solved statements; `angles` are those of partial steps, each with what is taken where it is free."""
     guards = [s.condition for s in statements if isinstance(s, Require)]
-    guard = _without_unit(guards[0]) if guards else sp.Integer(1)
+    guard = _room(guards[0]) if guards else sp.Integer(1)
     found: list[Let] = []
     choices: dict[sp.Expr, sp.Expr] = {}
     conditions: dict[sp.Expr, sp.Basic] = {}

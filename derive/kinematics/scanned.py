@@ -112,7 +112,7 @@ def solve_both(mechanism: Mechanism) -> Searching:
     if (left := len(trial.derivation.residuals)) != 1:
         raise DescriptionError(f"with {mechanism.search.joint.name} known, {left} conditions are left, not one")
     guards = [s.condition for s in trial.derivation.statements if isinstance(s, Require)]
-    if len(guards) > 1 or not all(isinstance(g, sp.Ge) for g in guards):
+    if len(guards) > 1 or not all(isinstance(g, sp.Ge) or isinstance(g.args[0], sp.Abs) for g in guards):
         raise DescriptionError(f"a trial along {mechanism.search.joint.name} may be out of reach in one step only")
     found, asked = steps_and_rest(mechanism, trial, forward)
     return Searching(mechanism, forward, closed, assign(simple, closed, pose_at_axes(simple)), trial, found, asked)

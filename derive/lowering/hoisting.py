@@ -92,8 +92,8 @@ def hoisted(
     free = Names({*taken, *varying})
     names: dict[Node, Named] = {}
 
-    def called(node: Node) -> sp.Symbol | None:
-        return names[node].name if node in names else None
+    def called(node: Node) -> sp.Expr | None:
+        return names[node].sign * names[node].name if node in names else None
 
     inner = {node for node in reached(read) if node in given}
     for order, node in enumerate(sorted(read | inner, key=lambda n: n.place)):

@@ -8,10 +8,12 @@ from dataclasses import replace
 from derive.ir.graph import Graph, Node, reached
 from derive.ir.passes import calling
 from derive.ir.program import Let, Program
+from derive.lowering.coefficients import collected, distributed
 from derive.lowering.dividing import Dividing
 from derive.lowering.draft import Draft, Effect, Reader, changed, values_of
 from derive.lowering.factoring import Factoring
 from derive.lowering.hoisting import Constant, Gathering, hoisted
+from derive.lowering.opening import opened
 from derive.lowering.sharing import Sharing
 from derive.lowering.writing import written
 
@@ -34,6 +36,8 @@ def _shorter(draft: Draft, graph: Graph, constant: Constant) -> Draft:
     draft = changed(draft, Gathering(graph, constant))
     draft = changed(draft, Factoring(graph, draft.names, constant))
     draft = changed(draft, Gathering(graph, constant))
+    draft = distributed(collected(draft, graph, constant), graph, constant)
+    draft = opened(draft, graph, constant)
     draft = changed(draft, Sharing(graph, _nodes(draft), constant))
     return changed(draft, Dividing(graph, _nodes(draft), constant))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections import Counter
 from collections.abc import Callable
@@ -24,7 +25,8 @@ _MULTIPLES = {sp.Integer(2): "twice", sp.Rational(1, 2): "half"}
 _READABLE = re.compile(r"(?=.{1,40}$)[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _FUNCTIONS = {sp.sin: "sin", sp.cos: "cos", sp.Abs: "size", Root: "root", Atan2: "angle", ToReal: "real"}
 
-Called = Callable[[Node], sp.Symbol | None]
+Called = Callable[[Node], sp.Expr | None]
+"""The name of a node, with a minus sign where it is that of the negative."""
 
 
 def said(value: Value, called: Called, reader: str) -> str:
@@ -39,12 +41,21 @@ def _words(value: Value, called: Called) -> str | None:
     """A sum of names, a product of names, a function of a name; None for what would need parentheses."""
     node = value.node
     if node.head is SUM:
-        terms = sorted((Value(t.node, value.sign * t.sign) for t in node.parts), key=lambda t: t.sign < 0)
+        signed = (Value(t.node, value.sign * t.sign * _sign(t.node, called)) for t in node.parts)
+        terms = sorted(signed, key=lambda t: t.sign < 0)
         said_terms = [(t.sign, _factor(t.node, called)) for t in terms]
         if any(word is None for _, word in said_terms):
             return None
         return "".join(("_minus_" if sign < 0 else "_plus_") + str(word) for sign, word in said_terms).removeprefix("_plus_")
     return _factor(node, called)
+
+
+def _sign(node: Node, called: Called) -> int:
+    """The sign of a term, where names are those of negatives."""
+    own = called(node)
+    if own is not None:
+        return 1 if own.is_Symbol else -1
+    return math.prod(_sign(n, called) for n in node.sources()) if node.head is PRODUCT else 1
 
 
 def _factor(node: Node, called: Called) -> str | None:
@@ -72,7 +83,7 @@ def _atom(node: Node, called: Called) -> str | None:
     """What can stand in a product."""
     own = called(node)
     if own is not None:
-        return str(own.name)
+        return str(own if own.is_Symbol else -own)
     if node.head is PRODUCT and len(node.parts) == 2 and node.parts[0] == node.parts[1] and not node.divisors:
         inner = _atom(node.parts[0].node, called)
         return None if inner is None else f"{inner}_squared"

@@ -5,6 +5,7 @@ Statements keep their order; a binding stands just before the first statement th
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -90,14 +91,14 @@ class _Writer:
         order = len(self.draft.program.body) if known is None else known.order
         return Named(self.free.fresh(proposal, _WHOLE if is_whole(node) else None), value.sign, "", order)
 
-    def _called(self, node: Node) -> sp.Symbol | None:
+    def _called(self, node: Node) -> sp.Expr | None:
         """The name of a value; of one that stays away from zero by a choice, the name of what it is elsewhere."""
         for value in (_guarded(node), node):
             if isinstance(value.head, sp.Symbol):
                 return value.head
             named = self.names.get(value) or self.constants.get(value)
             if named is not None:
-                return named.name
+                return named.sign * named.name
         return None
 
     # --- statements
@@ -202,7 +203,7 @@ class _Writer:
         for value in above:
             sign *= value.sign
         if sign < 0:  # as many signs as terms leave it open whose sign it is
-            place = next((k for k, v in enumerate(above) if self._is_open(v.node) and not _surplus(v.node)), 0)
+            place = next((k for k, v in enumerate(above) if self._is_open(v.node) and not self._surplus(v.node)), 0)
             above[place : place + 1] = [-above[place]] if above else []
         factors = [self.text(f) for f in above] + [1 / self.text(Value(d, 1)) for d in below]
         if sign < 0 and not above:
@@ -214,16 +215,31 @@ class _Writer:
 
     def _is_open(self, node: Node) -> bool:
         """Whether it is a sum that is written out."""
-        return node.head is SUM and node not in self._texts
+        return node.head is SUM and node not in self.names and node not in self.constants
 
     def _better_sign(self, node: Node) -> int:
-        surplus = _surplus(node) if self._is_open(node) else 1
-        return -1 if surplus < 0 or (surplus == 0 and node.parts[0].sign < 0) else 1
+        if not self._is_open(node):
+            return self._shown_sign(Value(node, 1))
+        surplus = self._surplus(node)
+        return -1 if surplus < 0 or (surplus == 0 and self._shown_sign(node.parts[0]) < 0) else 1
 
+    def _surplus(self, node: Node) -> int:
+        """How many terms of a sum have no minus sign, less those that have one."""
+        return sum(map(self._shown_sign, node.parts))
 
-def _surplus(node: Node) -> int:
-    """How many terms of a sum have no minus sign, less those that have one."""
-    return sum(part.sign for part in node.parts)
+    def _shown_sign(self, value: Value) -> int:
+        """The sign in front of a term as it is written."""
+        node, sign = value
+        if node.head is not PRODUCT or node in self.names or node in self.constants:
+            return sign * self._sign_of_name(node)
+        if any(self._is_open(f.node) and not self._surplus(f.node) for f in node.parts):
+            return 1
+        return sign * math.prod(map(self._better_sign, (*(f.node for f in node.parts), *node.divisors)))
+
+    def _sign_of_name(self, node: Node) -> int:
+        """A name may stand for the negative of its node."""
+        named = self.names.get(node) or self.constants.get(node)
+        return 1 if named is None else named.sign
 
 
 def _guarded(node: Node) -> Node:

@@ -88,11 +88,11 @@ _PRIMITIVES: dict[type[sp.Basic], Cost] = {
     sp.cos: Cost(trigonometric=1),
     Root: Cost(roots=1),
     Atan2: Cost(additions=1, divisions=1, trigonometric=1),
-    NearestPeriod: Cost(additions=5, multiplications=1, divisions=1),
+    NearestPeriod: Cost(additions=4, multiplications=1, divisions=1),
     NearestOnArc: Cost(additions=5, multiplications=3, divisions=1),
 }
 """As the functions of Structured Text do it, where they have to."""
-_PERIOD_BYTE = Cost(additions=4, divisions=1)
+_PERIOD_BYTE = Cost(additions=3, divisions=1)
 """The number of the turn in which an axis value lies."""
 
 

@@ -130,6 +130,7 @@ def _templates() -> Environment:
         degree=literal(math.pi / 180.0),
         free_angle=literal(float(FREE_ANGLE)),
         edge=literal(float(EDGE)),
+        half_turn=literal(180.0 + float(EDGE)),
         largest=literal(float(LARGEST)),
         held=literal(float(HELD)),
         pivot=literal(float(PIVOT)),

@@ -3,8 +3,8 @@
 Two roots. With h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h:
 cos u = (a C - b S) / h,  sin u = (b C + a S) / h. The two factors stay products: expanded they lose half the digits. C and
 S come from these factors alone, tan^2 of half the angle is their ratio: so C^2 + S^2 = 1 to rounding, whatever e has lost.
-Slope a sin u - b cos u = h S: sigma is its sign. Guard: |e| <= h, else there is no solution; where they are
-equal both roots meet (degenerate case). An h that can vanish is refused below 1e-9 of the length it is
+Slope a sin u - b cos u = h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution; where it is 1
+both roots meet (degenerate case). An h that can vanish is refused below 1e-9 of the length it is
 compared with: nothing can be aimed then.
 """
 
@@ -217,8 +217,8 @@ def _is_square(value: sp.Expr) -> bool:
 def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _Amplitude) -> Binding:
     sigma = sign_of(angle)
     turned = (amplitude.cos_unit, amplitude.sin_unit) != (1, 0)
-    words = ("swing_scale" if turned else "scale", "one_less_cos", "one_plus_cos", "sine_square", "both", "sum")
-    scale, less_cos, plus_cos, square, twice, divisor = (real(f"{word}_{angle.name}") for word in words)
+    words = ("one_less_cos", "one_plus_cos", "sine_square", "both", "sum")
+    less_cos, plus_cos, square, twice, divisor = (real(f"{word}_{angle.name}") for word in words)
     cos_name = real(f"cos_swing_{angle.name}") if turned else cosine(angle)
     sin_name = real(f"sin_swing_{angle.name}") if turned else sine(angle)
     length, right = amplitude.length, amplitude.right
@@ -229,14 +229,13 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     statements: list[Statement] = [
         *amplitude.naming.lets,
         *amplitude.guard,
-        Let(scale, length, f"{angle.name}: law of cosines in the {equation.label} equation"),
-        Let(less_cos, less, "1 - cosine, times the scale"),
+        Let(less_cos, less, f"{angle.name}: law of cosines in the {equation.label} equation: 1 - cosine, times a scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
-        Let(square, less_cos * plus_cos, "the square of sine times scale"),
-        Require(sp.Ge(square, -BOUNDARY * scale**2), Status.UNREACHABLE, reason=out_of_reach(angle, told, known)),
         Let(twice, less_cos + plus_cos, "twice the scale, with the rounding of its parts"),
         Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
         Let(cos_name, (plus_cos - less_cos) / divisor),
+        Require(sp.Le(sp.Abs(cos_name), 1 + BOUNDARY / 2), Status.UNREACHABLE, reason=out_of_reach(angle, told, known)),
+        Let(square, less_cos * plus_cos, "the square of sine times scale"),
         Let(sin_name, 2 * sigma * Root(square) / size(divisor)),
     ]
     if turned:

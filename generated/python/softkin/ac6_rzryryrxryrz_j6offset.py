@@ -28,9 +28,9 @@ Singularities:
     determinant: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 149 additions, 189 multiplications, 22 divisions, 0 square roots, 14 sines
-    inverse: 76241 additions, 122051 multiplications, 8205 divisions, 3143 square roots, 5316 sines
-    inverse, all 16 branches open: 1219361 additions, 1952141 multiplications, 131145 divisions, 50258 square roots, 85056 sines
+    forward: 143 additions, 189 multiplications, 21 divisions, 0 square roots, 14 sines
+    inverse: 76235 additions, 124331 multiplications, 6685 divisions, 3143 square roots, 5316 sines
+    inverse, all 16 branches open: 1219265 additions, 1988621 multiplications, 106825 divisions, 50258 square roots, 85056 sines
     the search along A6: at most 760 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
@@ -136,18 +136,15 @@ class Constants(NamedTuple):
     mid_a6: float
     machine_scale: float
     effective_q3_tried: float
-    swing_scale_q3_tried: float
     searched: bool
     machine_scale_times_free_angle: float
     a2_plus_effective_q3_tried: float
     a2_minus_effective_q3_tried: float
     d4_by_effective_q3_tried: float
     a3_by_effective_q3_tried: float
-    swing_scale_q3_tried_squared: float
     size_of_j6_offset_x: float
     part_of_fits: float
     one_by_machine_scale: float
-    part_of_constant: float
 
 
 class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
@@ -466,18 +463,15 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = a1 + a2 + d4  # a length of the machine
         effective_q3_tried = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
-        swing_scale_q3_tried = 2.0*a2*effective_q3_tried  # q3: law of cosines in the x_from_q1² + z_from_q1² equation
         searched = abs(j6_offset_x) > 0.0  # whether to search along A6
         machine_scale_times_free_angle = 1e-11*machine_scale
         a2_plus_effective_q3_tried = a2 + effective_q3_tried
         a2_minus_effective_q3_tried = a2 - effective_q3_tried
         d4_by_effective_q3_tried = d4/effective_q3_tried
         a3_by_effective_q3_tried = a3/effective_q3_tried
-        swing_scale_q3_tried_squared = swing_scale_q3_tried*swing_scale_q3_tried
         size_of_j6_offset_x = abs(j6_offset_x)
         part_of_fits = 0.5*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
         one_by_machine_scale = 1.0/machine_scale
-        part_of_constant = 1e-12*swing_scale_q3_tried*swing_scale_q3_tried
         return Constants(
             d1=d1, a1=a1, a2=a2, a3=a3, d4=d4, j6_offset_x=j6_offset_x, d6=d6, offset_a1=offset_a1,
             offset_a2=offset_a2, offset_a3=offset_a3, offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6,
@@ -492,13 +486,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             highest_a5=highest_a5, single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6,
             upper_a6=effective_upper_a6, unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6,
             single_a6=single_a6, mid_a6=mid_a6, machine_scale=machine_scale, effective_q3_tried=effective_q3_tried,
-            swing_scale_q3_tried=swing_scale_q3_tried, searched=searched,
-            machine_scale_times_free_angle=machine_scale_times_free_angle,
+            searched=searched, machine_scale_times_free_angle=machine_scale_times_free_angle,
             a2_plus_effective_q3_tried=a2_plus_effective_q3_tried,
             a2_minus_effective_q3_tried=a2_minus_effective_q3_tried,
             d4_by_effective_q3_tried=d4_by_effective_q3_tried, a3_by_effective_q3_tried=a3_by_effective_q3_tried,
-            swing_scale_q3_tried_squared=swing_scale_q3_tried_squared, size_of_j6_offset_x=size_of_j6_offset_x,
-            part_of_fits=part_of_fits, one_by_machine_scale=one_by_machine_scale, part_of_constant=part_of_constant,
+            size_of_j6_offset_x=size_of_j6_offset_x, part_of_fits=part_of_fits,
+            one_by_machine_scale=one_by_machine_scale,
         )
 
     def _try_joint(self, given: Values) -> Values | Status:
@@ -520,7 +513,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         d6 = k.d6
         j6_offset_x = k.j6_offset_x
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        swing_scale_q3_tried_squared = k.swing_scale_q3_tried_squared
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # the point that the last joints turn about
@@ -567,7 +559,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
         part_of_one_less_cos_q3_tried = a2_plus_effective_q3_tried - reach_tried
         part_of_one_less_cos_q3_tried_2 = a2_plus_effective_q3_tried + reach_tried
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + z_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_tried = part_of_one_less_cos_q3_tried*part_of_one_less_cos_q3_tried_2
         part_of_one_plus_cos_q3_tried = a2_minus_effective_q3_tried - reach_tried
         part_of_one_plus_cos_q3_tried_2 = a2_minus_effective_q3_tried + reach_tried
@@ -581,17 +573,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             + slope_sin_q1_tried*wrist_y_tried
         )
         slope_reach_tried = (
-            -(
-                -slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried - slope_wrist_z_tried*wrist_z_from_q1_tried
+            (
+                slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried + slope_wrist_z_tried*wrist_z_from_q1_tried
             )/(reach_tried if reach_tried > 0.0 else 1.0)
             if reach_tried > 0.0
             else 0.0
         )
         slope_one_less_cos_q3_tried = (
-            -(part_of_one_less_cos_q3_tried_2 - part_of_one_less_cos_q3_tried)*slope_reach_tried
+            (part_of_one_less_cos_q3_tried - part_of_one_less_cos_q3_tried_2)*slope_reach_tried
         )
         slope_one_plus_cos_q3_tried = (
-            -(part_of_one_plus_cos_q3_tried - part_of_one_plus_cos_q3_tried_2)*slope_reach_tried
+            (part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried)*slope_reach_tried
         )
         if both_q3_tried > 0.0:
             sum_q3_tried = both_q3_tried
@@ -706,8 +698,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             (r11_from_q123_tried + slope_r12_from_q123_tried)*cos_q6_tried
             + (slope_r11_from_q123_tried - r12_from_q123_tried)*sin_q6_tried
         )
-        guard = 1e-12 + sine_square_q3_tried/swing_scale_q3_tried_squared
-        slope_guard = slope_sine_square_q3_tried/swing_scale_q3_tried_squared
+        guard = 1.000000000001 - cos_swing_q3_tried*cos_swing_q3_tried
+        slope_guard = -2.0*slope_cos_swing_q3_tried*cos_swing_q3_tried
         return (
             -r12_from_q123_before_q6_tried, -slope_r12_from_q123_before_q6_tried, guard, slope_guard, cos_q1_tried,
             sin_q1_tried, cos_q2_tried, sin_q2_tried,
@@ -759,7 +751,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*j6_offset_x - d6*goal_r33
         wrist_z_from_q1_tried = wrist_z_tried - d1  # what the unknown links must span
         reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + z_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_tried = (a2_plus_effective_q3_tried + reach_tried)*(a2_plus_effective_q3_tried - reach_tried)
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = (
@@ -885,10 +877,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
             r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
             error_5 = (
-                -0.5
+                0.5
                 *(
-                    goal_r31*r11_at_q6 + goal_r32*r12_at_q6 + goal_r33*r13_at_q5 - goal_r11*r31_at_q6 - goal_r12*r32_at_q6
-                    - goal_r13*r33_at_q5
+                    goal_r11*r31_at_q6 + goal_r12*r32_at_q6 + goal_r13*r33_at_q5 - goal_r31*r11_at_q6 - goal_r32*r12_at_q6
+                    - goal_r33*r13_at_q5
                 )
             )
             error_6 = (
@@ -940,9 +932,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             product_1_3 = (
                 rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5 + rate_1_6*rate_3_6
             )
-            rate_1_2_plus_rate_1_3 = -rate_1_2 - rate_1_3
-            product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 + rate_1_2_plus_rate_1_3*sin_q1
-            product_1_5 = r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6 - rate_1_2_plus_rate_1_3*cos_q1
+            rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
+            product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 - rate_1_2_plus_rate_1_3*sin_q1
+            product_1_5 = rate_1_2_plus_rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6
             product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23
             product_2_2 = (
                 1e-12 + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4 + rate_2_5*rate_2_5
@@ -951,9 +943,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             product_2_3 = (
                 rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5 + rate_2_6*rate_3_6
             )
-            rate_2_2_plus_rate_2_3 = -rate_2_2 - rate_2_3
-            product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 + rate_2_2_plus_rate_2_3*sin_q1
-            product_2_5 = r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6 - rate_2_2_plus_rate_2_3*cos_q1
+            rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
+            product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 - rate_2_2_plus_rate_2_3*sin_q1
+            product_2_5 = rate_2_2_plus_rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6
             product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23
             product_3_3 = (
                 1e-12 + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5 + rate_3_6*rate_3_6
@@ -1152,10 +1144,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         a1 = k.a1
         a2 = k.a2
         a3 = k.a3
+        a3_by_effective_q3_tried = k.a3_by_effective_q3_tried
         d1 = k.d1
         d4 = k.d4
+        d4_by_effective_q3_tried = k.d4_by_effective_q3_tried
         d6 = k.d6
-        effective_q3_tried = k.effective_q3_tried
         j6_offset_x = k.j6_offset_x
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
@@ -1279,7 +1272,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
-        margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_tried
+        margin_elbow_closed = a3_by_effective_q3_tried*sin_q3_closed + d4_by_effective_q3_tried*cos_q3_closed
         if searched:
             # the point that the last joints turn about
             wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*j6_offset_x
@@ -1395,7 +1388,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
-        part_of_constant = k.part_of_constant
         searched = k.searched
         single_a1 = k.single_a1
         single_a2 = k.single_a2
@@ -1422,7 +1414,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         reach_closed = sqrt(
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + z_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3_closed = (
             (a2_plus_effective_q3_tried + reach_closed)*(a2_plus_effective_q3_tried - reach_closed)
         )
@@ -1430,9 +1422,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         one_plus_cos_q3_closed = (
             (reach_closed - a2_minus_effective_q3_tried)*(a2_minus_effective_q3_tried + reach_closed)
         )
-        sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
+        # twice the scale, with the rounding of its parts
+        both_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+        sum_q3_closed = both_q3_closed if both_q3_closed > 0.0 else 1.0
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/sum_q3_closed
         # q3: out of reach
-        if not (searched or (sine_square_q3_closed >= -part_of_constant)):
+        if not (searched or (-1.0000000000005 <= cos_swing_q3_closed <= 1.0000000000005)):
             missing = (
                 0.5*(
                     abs(a2_minus_effective_q3_tried - reach_closed) + abs(a2_minus_effective_q3_tried + reach_closed)
@@ -1478,13 +1473,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 cos_q1_closed = cos(free_a1)
                 sin_q1_closed = sin(free_a1)
             q1 = arctan2(sin_q1_closed + 0.0, cos_q1_closed + 0.0)
-            # twice the scale, with the rounding of its parts
-            both_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-            sum_q3_closed = both_q3_closed if both_q3_closed > 0.0 else 1.0
+            sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
             sin_swing_q3_closed = (
                 2.0*(sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow/sum_q3_closed
             )
-            cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/sum_q3_closed
             # its reference where it is free
             if reach_closed > machine_scale_times_free_angle:
                 arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed

@@ -28,9 +28,9 @@ Singularities:
     a4_parallel_a6: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 57 additions, 52 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 245 additions, 282 multiplications, 53 divisions, 18 square roots, 26 sines
-    inverse, all 8 branches open: 1729 additions, 1941 multiplications, 361 divisions, 130 square roots, 208 sines
+    forward: 51 additions, 52 multiplications, 7 divisions, 0 square roots, 13 sines
+    inverse: 239 additions, 282 multiplications, 53 divisions, 18 square roots, 26 sines
+    inverse, all 8 branches open: 1681 additions, 1941 multiplications, 361 divisions, 130 square roots, 208 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -125,7 +125,6 @@ class Constants(NamedTuple):
     mid_a6: float
     machine_scale: float
     rounding_q1: float
-    scale_q3: float
     size_q1_for_q3: float
     machine_scale_times_free_angle: float
     size_q1_for_q3_times_rounding: float
@@ -134,7 +133,6 @@ class Constants(NamedTuple):
     machine_scale_squared_times_plane: float
     machine_scale_times_rounding: float
     part_of_cos_q6: float
-    scale_q3_squared_times_rounding: float
     a2_squared_plus_a3_squared: float
     twice_d5: float
     d1_times_d5_times_2: float
@@ -455,7 +453,6 @@ class Ac6ThreeParallel(Mechanism):
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = abs(a2) + abs(a3)  # a length of the machine
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
-        scale_q3 = 2.0*a2*a3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         size_q1_for_q3 = 2.0*abs(a2*a3)
         machine_scale_times_free_angle = 1e-11*machine_scale
         size_q1_for_q3_times_rounding = 1e-12*size_q1_for_q3
@@ -464,7 +461,6 @@ class Ac6ThreeParallel(Mechanism):
         machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
         machine_scale_times_rounding = 1e-12*machine_scale
         part_of_cos_q6 = 1.000000001*size_q1_for_q3
-        scale_q3_squared_times_rounding = 1e-12*scale_q3*scale_q3
         a2_squared_plus_a3_squared = a2*a2 + a3*a3
         twice_d5 = 2.0*d5
         d1_times_d5_times_2 = 2.0*d1*d5
@@ -483,14 +479,13 @@ class Ac6ThreeParallel(Mechanism):
             upper_a5=effective_upper_a5, unlimited_a5=unlimited_a5, lowest_a5=lowest_a5, highest_a5=highest_a5,
             single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6, upper_a6=effective_upper_a6,
             unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6, single_a6=single_a6, mid_a6=mid_a6,
-            machine_scale=machine_scale, rounding_q1=rounding_q1, scale_q3=scale_q3, size_q1_for_q3=size_q1_for_q3,
+            machine_scale=machine_scale, rounding_q1=rounding_q1, size_q1_for_q3=size_q1_for_q3,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
             size_q1_for_q3_times_rounding=size_q1_for_q3_times_rounding,
             part_of_divisor_q6_q1_for_q3=part_of_divisor_q6_q1_for_q3,
             part_of_highest_q6_q1_for_q3=part_of_highest_q6_q1_for_q3,
             machine_scale_squared_times_plane=machine_scale_squared_times_plane,
             machine_scale_times_rounding=machine_scale_times_rounding, part_of_cos_q6=part_of_cos_q6,
-            scale_q3_squared_times_rounding=scale_q3_squared_times_rounding,
             a2_squared_plus_a3_squared=a2_squared_plus_a3_squared, twice_d5=twice_d5,
             d1_times_d5_times_2=d1_times_d5_times_2, a2_plus_a3=a2_plus_a3, a2_minus_a3=a2_minus_a3,
         )
@@ -553,8 +548,8 @@ class Ac6ThreeParallel(Mechanism):
         y_at_q4 = y_at_q3 + a3*r21_at_q23
         y_at_q5 = y_at_q4 - d4*cos_q1
         y_at_q6 = y_at_q5 - d5*r22_at_q234
-        d6_times_r22_at_q5 = -d6*r22_at_q5
-        y = y_at_q6 - d6_times_r22_at_q5
+        d6_times_r22_at_q5 = d6*r22_at_q5
+        y = d6_times_r22_at_q5 + y_at_q6
         r32_at_q5 = -sin_q234*sin_q5
         sin_q2 = sin(q2)
         z_at_q3 = d1 + a2*sin_q2
@@ -575,7 +570,7 @@ class Ac6ThreeParallel(Mechanism):
         r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6
         r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6
         wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
-        wrist_y = d6_times_r22_at_q5 + y
+        wrist_y = y - d6_times_r22_at_q5
         branch_shoulder = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         return (
@@ -676,7 +671,6 @@ class Ac6ThreeParallel(Mechanism):
         part_of_divisor_q6_q1_for_q3 = k.part_of_divisor_q6_q1_for_q3
         part_of_highest_q6_q1_for_q3 = k.part_of_highest_q6_q1_for_q3
         rounding_q1 = k.rounding_q1
-        scale_q3_squared_times_rounding = k.scale_q3_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -738,20 +732,20 @@ class Ac6ThreeParallel(Mechanism):
             if radius_q6_before_q1_for_q3 > 1e-11:
                 along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
                 one_by_radius_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
-                part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
-                cos_q6_before_q1_for_q3 = -part_of_cos_q6_before_q1_for_q3
+                part_of_cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
+                cos_q6_before_q1_for_q3 = part_of_cos_q6_before_q1_for_q3
                 across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
                 part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
                 sin_q6_before_q1_for_q3 = part_of_sin_q6_before_q1_for_q3
                 radius_q6_rate_q1_for_q3 = (
-                    -(
-                        -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                        - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                    (
+                        r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                        + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                     )
                     /radius_q6_before_q1_for_q3
                 )
                 cos_q6_rate_q1_for_q3 = (
-                    (along_q6_rate_q1_for_q3 + part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
+                    (along_q6_rate_q1_for_q3 - part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
                     *one_by_radius_q6_before_q1_for_q3
                 )
                 sin_q6_rate_q1_for_q3 = (
@@ -763,9 +757,9 @@ class Ac6ThreeParallel(Mechanism):
                 sin_q6_before_q1_for_q3 = -sin_of_free_a6
                 if radius_q6_before_q1_for_q3 > 0.0:
                     radius_q6_rate_q1_for_q3 = (
-                        -(
-                            -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                            - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                        (
+                            r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                            + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                         )
                         /radius_q6_before_q1_for_q3
                     )
@@ -1016,7 +1010,7 @@ class Ac6ThreeParallel(Mechanism):
                 wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
                 wrist_y_from_q1_along = d5*r32
                 along_q6_of_q3 = (
-                    -2.0*(-wrist_x_from_q1_along*wrist_x_from_q1_fixed - wrist_y_from_q1_along*wrist_y_from_q1_fixed)
+                    2.0*(wrist_x_from_q1_along*wrist_x_from_q1_fixed + wrist_y_from_q1_along*wrist_y_from_q1_fixed)
                 )
                 wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
                 across_q6_of_q3 = (
@@ -1080,11 +1074,14 @@ class Ac6ThreeParallel(Mechanism):
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         # q3: out of reach
-        if not (sine_square_q3 >= -scale_q3_squared_times_rounding):
+        if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
             missing = (
                 0.5*(
                     abs(a2_minus_a3 - reach) + abs(a2_minus_a3 + reach) + abs(a2_plus_a3 - reach)
@@ -1098,9 +1095,7 @@ class Ac6ThreeParallel(Mechanism):
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(sum_q3)
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         if reach > machine_scale_times_free_angle:
@@ -1277,7 +1272,7 @@ class Ac6ThreeParallel(Mechanism):
         wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
         r21_at_q234 = cos_q234*sin_q1
         r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5
-        d6_times_r22_at_q5 = -d6*r22_at_q5
+        d6_times_r22_at_q5 = d6*r22_at_q5
         r22_at_q234 = -sin_q1*sin_q234
         r21_at_q2 = cos_q2*sin_q1
         y_at_q3 = a2*r21_at_q2
@@ -1285,8 +1280,8 @@ class Ac6ThreeParallel(Mechanism):
         y_at_q4 = y_at_q3 + a3*r21_at_q23
         y_at_q5 = y_at_q4 - d4*cos_q1
         y_at_q6 = y_at_q5 - d5*r22_at_q234
-        y = y_at_q6 - d6_times_r22_at_q5
-        wrist_y = d6_times_r22_at_q5 + y
+        y = d6_times_r22_at_q5 + y_at_q6
+        wrist_y = y - d6_times_r22_at_q5
         margin_wrist_on_axis_1 = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         return (margin_wrist_on_axis_1, sin_q3, sin_q5)

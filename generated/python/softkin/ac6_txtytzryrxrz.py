@@ -21,9 +21,9 @@ Singularities:
     a4_parallel_a6: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 31 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
-    inverse: 82 additions, 73 multiplications, 18 divisions, 3 square roots, 5 sines
-    inverse, all 2 branches open: 131 additions, 101 multiplications, 27 divisions, 4 square roots, 10 sines
+    forward: 28 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
+    inverse: 79 additions, 73 multiplications, 18 divisions, 3 square roots, 5 sines
+    inverse, all 2 branches open: 125 additions, 101 multiplications, 27 divisions, 4 square roots, 10 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,

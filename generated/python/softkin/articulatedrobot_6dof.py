@@ -28,9 +28,9 @@ Singularities:
     a4_parallel_a6: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 65 additions, 66 multiplications, 8 divisions, 0 square roots, 14 sines
-    inverse: 152 additions, 142 multiplications, 35 divisions, 9 square roots, 12 sines
-    inverse, all 8 branches open: 985 additions, 821 multiplications, 217 divisions, 58 square roots, 96 sines
+    forward: 59 additions, 66 multiplications, 7 divisions, 0 square roots, 14 sines
+    inverse: 146 additions, 142 multiplications, 35 divisions, 9 square roots, 12 sines
+    inverse, all 8 branches open: 937 additions, 821 multiplications, 217 divisions, 58 square roots, 96 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -127,19 +127,17 @@ class Constants(NamedTuple):
     machine_scale: float
     effective_q3: float
     rounding_q1: float
-    swing_scale_q3: float
     size_q1_for_q3: float
+    d4_by_effective_q3: float
+    a3_by_effective_q3: float
     size_q1_for_q3_times_rounding: float
     machine_scale_times_free_angle: float
     machine_scale_squared_times_plane: float
     machine_scale_times_rounding: float
-    swing_scale_q3_squared_times_rounding: float
     a2_squared_plus_effective_q3_squared: float
     twice_d3: float
     a2_plus_effective_q3: float
     a2_minus_effective_q3: float
-    d4_by_effective_q3: float
-    a3_by_effective_q3: float
 
 
 class ArticulatedRobot6DOF(Mechanism):
@@ -463,19 +461,17 @@ class ArticulatedRobot6DOF(Mechanism):
         machine_scale = a1 + a2 + a3 + d4  # a length of the machine
         effective_q3 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
-        swing_scale_q3 = 2.0*a2*effective_q3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         size_q1_for_q3 = 2.0*abs(effective_q3)*a2
+        d4_by_effective_q3 = d4/effective_q3
+        a3_by_effective_q3 = a3/effective_q3
         size_q1_for_q3_times_rounding = 1e-12*size_q1_for_q3
         machine_scale_times_free_angle = 1e-11*machine_scale
         machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
         machine_scale_times_rounding = 1e-12*machine_scale
-        swing_scale_q3_squared_times_rounding = 1e-12*swing_scale_q3*swing_scale_q3
         a2_squared_plus_effective_q3_squared = a2*a2 + effective_q3*effective_q3
         twice_d3 = 2.0*d3
         a2_plus_effective_q3 = a2 + effective_q3
         a2_minus_effective_q3 = a2 - effective_q3
-        d4_by_effective_q3 = d4/effective_q3
-        a3_by_effective_q3 = a3/effective_q3
         return Constants(
             d1=d1, a1=a1, a2=a2, d3=d3, a3=a3, d4=d4, d6=d6, offset_a1=offset_a1, offset_a2=offset_a2,
             offset_a3=offset_a3, offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6,
@@ -490,15 +486,13 @@ class ArticulatedRobot6DOF(Mechanism):
             highest_a5=highest_a5, single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6,
             upper_a6=effective_upper_a6, unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6,
             single_a6=single_a6, mid_a6=mid_a6, machine_scale=machine_scale, effective_q3=effective_q3,
-            rounding_q1=rounding_q1, swing_scale_q3=swing_scale_q3, size_q1_for_q3=size_q1_for_q3,
-            size_q1_for_q3_times_rounding=size_q1_for_q3_times_rounding,
+            rounding_q1=rounding_q1, size_q1_for_q3=size_q1_for_q3, d4_by_effective_q3=d4_by_effective_q3,
+            a3_by_effective_q3=a3_by_effective_q3, size_q1_for_q3_times_rounding=size_q1_for_q3_times_rounding,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
             machine_scale_squared_times_plane=machine_scale_squared_times_plane,
             machine_scale_times_rounding=machine_scale_times_rounding,
-            swing_scale_q3_squared_times_rounding=swing_scale_q3_squared_times_rounding,
             a2_squared_plus_effective_q3_squared=a2_squared_plus_effective_q3_squared, twice_d3=twice_d3,
             a2_plus_effective_q3=a2_plus_effective_q3, a2_minus_effective_q3=a2_minus_effective_q3,
-            d4_by_effective_q3=d4_by_effective_q3, a3_by_effective_q3=a3_by_effective_q3,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -508,11 +502,12 @@ class ArticulatedRobot6DOF(Mechanism):
         a1 = k.a1
         a2 = k.a2
         a3 = k.a3
+        a3_by_effective_q3 = k.a3_by_effective_q3
         d1 = k.d1
         d3 = k.d3
         d4 = k.d4
+        d4_by_effective_q3 = k.d4_by_effective_q3
         d6 = k.d6
-        effective_q3 = k.effective_q3
         machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
@@ -590,7 +585,7 @@ class ArticulatedRobot6DOF(Mechanism):
         branch_arm = (wrist_x*cos_q1 + wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = (d4*cos_q3 - a3*sin_q3)/effective_q3
+        branch_elbow = d4_by_effective_q3*cos_q3 - a3_by_effective_q3*sin_q3
         return (
             (x, y, z),
             ((r11_at_q6, r12_at_q6, r12_at_q5), (r21_at_q6, r22_at_q6, r22_at_q5), (r31_at_q6, r32_at_q6, r32_at_q5)),
@@ -703,7 +698,6 @@ class ArticulatedRobot6DOF(Mechanism):
         single_a6 = k.single_a6
         size_q1_for_q3 = k.size_q1_for_q3
         size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
-        swing_scale_q3_squared_times_rounding = k.swing_scale_q3_squared_times_rounding
         twice_d3 = k.twice_d3
         # numbers of reasonable size
         if not (
@@ -778,12 +772,15 @@ class ArticulatedRobot6DOF(Mechanism):
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
-        one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         # q3: out of reach
-        if not (sine_square_q3 >= -swing_scale_q3_squared_times_rounding):
+        if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
                 0.5*(
                     abs(a2_minus_effective_q3 - reach) + abs(a2_minus_effective_q3 + reach)
@@ -814,10 +811,8 @@ class ArticulatedRobot6DOF(Mechanism):
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         # its reference where it is free
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3*sin_swing_q3
@@ -982,10 +977,11 @@ class ArticulatedRobot6DOF(Mechanism):
         a1 = k.a1
         a2 = k.a2
         a3 = k.a3
+        a3_by_effective_q3 = k.a3_by_effective_q3
         d3 = k.d3
         d4 = k.d4
+        d4_by_effective_q3 = k.d4_by_effective_q3
         d6 = k.d6
-        effective_q3 = k.effective_q3
         machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
@@ -1040,7 +1036,7 @@ class ArticulatedRobot6DOF(Mechanism):
         margin_wrist_on_axis_1 = (wrist_x*cos_q1 + wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = (d4*cos_q3 - a3*sin_q3)/effective_q3
+        margin_elbow = d4_by_effective_q3*cos_q3 - a3_by_effective_q3*sin_q3
         return (margin_wrist_on_axis_1, margin_elbow, sin_q5)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:

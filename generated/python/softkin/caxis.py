@@ -13,8 +13,8 @@ Singularities:
     none
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 5 additions, 1 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 44 additions, 49 multiplications, 12 divisions, 3 square roots, 1 sines
+    forward: 4 additions, 1 multiplications, 1 divisions, 0 square roots, 2 sines
+    inverse: 43 additions, 49 multiplications, 12 divisions, 3 square roots, 1 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,

@@ -13,8 +13,8 @@ Singularities:
     none
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 7 additions, 5 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 44 additions, 49 multiplications, 12 divisions, 3 square roots, 1 sines
+    forward: 6 additions, 5 multiplications, 1 divisions, 0 square roots, 2 sines
+    inverse: 43 additions, 49 multiplications, 12 divisions, 3 square roots, 1 sines
 
 With an X or Y offset it can only be combined with a flange that keeps its orientation.
 

@@ -17,8 +17,8 @@ Singularities:
     length that a distance from there could be compared with
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 7 additions, 6 multiplications, 1 divisions, 0 square roots, 4 sines
-    inverse: 21 additions, 13 multiplications, 6 divisions, 2 square roots, 6 sines
+    forward: 6 additions, 6 multiplications, 1 divisions, 0 square roots, 4 sines
+    inverse: 20 additions, 13 multiplications, 6 divisions, 2 square roots, 6 sines
 
 On the vertical the azimuth is the reference's; at the origin the polar angle is too.
 

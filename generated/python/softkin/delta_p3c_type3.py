@@ -24,9 +24,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 68 additions, 70 multiplications, 7 divisions, 1 square roots, 6 sines
-    inverse: 99 additions, 83 multiplications, 21 divisions, 6 square roots, 3 sines
-    inverse, all 8 branches open: 785 additions, 664 multiplications, 168 divisions, 48 square roots, 24 sines
+    forward: 65 additions, 70 multiplications, 7 divisions, 1 square roots, 6 sines
+    inverse: 90 additions, 74 multiplications, 21 divisions, 6 square roots, 3 sines
+    inverse, all 8 branches open: 713 additions, 592 multiplications, 168 divisions, 48 square roots, 24 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -141,18 +141,18 @@ class Constants(NamedTuple):
     inner_arm_1_times_shortest_link: float
     inner_arm_2_times_shortest_link: float
     inner_arm_3_times_shortest_link: float
-    twice_inner_arm_1: float
-    twice_inner_arm_2: float
-    twice_inner_arm_3: float
     part_of_type2_rods_coplanar: float
     part_of_margin_rods_coplanar: float
     part_of_determinant_divisor: float
     twice_cos_azimuth_1: float
     twice_sin_azimuth_1: float
+    twice_inner_arm_1: float
     twice_cos_azimuth_2: float
     twice_sin_azimuth_2: float
+    twice_inner_arm_2: float
     twice_cos_azimuth_3: float
     twice_sin_azimuth_3: float
+    twice_inner_arm_3: float
     inner_arm_1_times_sin_azimuth_1_times_2: float
     cos_azimuth_1_times_inner_arm_1_times_2: float
     inner_arm_2_times_sin_azimuth_2_times_2: float
@@ -553,18 +553,18 @@ class DeltaP3CType3(OffsetKinematics):
         inner_arm_1_times_shortest_link = 1e-9*inner_arm_1
         inner_arm_2_times_shortest_link = 1e-9*inner_arm_2
         inner_arm_3_times_shortest_link = 1e-9*inner_arm_3
-        twice_inner_arm_1 = 2.0*inner_arm_1
-        twice_inner_arm_2 = 2.0*inner_arm_2
-        twice_inner_arm_3 = 2.0*inner_arm_3
         part_of_type2_rods_coplanar = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
         part_of_margin_rods_coplanar = outer_arm_1*outer_arm_2*outer_arm_3
         part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
         twice_cos_azimuth_1 = 2.0*cos_azimuth_1
         twice_sin_azimuth_1 = 2.0*sin_azimuth_1
+        twice_inner_arm_1 = 2.0*inner_arm_1
         twice_cos_azimuth_2 = 2.0*cos_azimuth_2
         twice_sin_azimuth_2 = 2.0*sin_azimuth_2
+        twice_inner_arm_2 = 2.0*inner_arm_2
         twice_cos_azimuth_3 = 2.0*cos_azimuth_3
         twice_sin_azimuth_3 = 2.0*sin_azimuth_3
+        twice_inner_arm_3 = 2.0*inner_arm_3
         inner_arm_1_times_sin_azimuth_1_times_2 = 2.0*inner_arm_1*sin_azimuth_1
         cos_azimuth_1_times_inner_arm_1_times_2 = 2.0*inner_arm_1*cos_azimuth_1
         inner_arm_2_times_sin_azimuth_2_times_2 = 2.0*inner_arm_2*sin_azimuth_2
@@ -602,14 +602,14 @@ class DeltaP3CType3(OffsetKinematics):
             part_of_share_2=part_of_share_2, part_of_share_3=part_of_share_3,
             inner_arm_1_times_shortest_link=inner_arm_1_times_shortest_link,
             inner_arm_2_times_shortest_link=inner_arm_2_times_shortest_link,
-            inner_arm_3_times_shortest_link=inner_arm_3_times_shortest_link, twice_inner_arm_1=twice_inner_arm_1,
-            twice_inner_arm_2=twice_inner_arm_2, twice_inner_arm_3=twice_inner_arm_3,
+            inner_arm_3_times_shortest_link=inner_arm_3_times_shortest_link,
             part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
             part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
             part_of_determinant_divisor=part_of_determinant_divisor, twice_cos_azimuth_1=twice_cos_azimuth_1,
-            twice_sin_azimuth_1=twice_sin_azimuth_1, twice_cos_azimuth_2=twice_cos_azimuth_2,
-            twice_sin_azimuth_2=twice_sin_azimuth_2, twice_cos_azimuth_3=twice_cos_azimuth_3,
-            twice_sin_azimuth_3=twice_sin_azimuth_3,
+            twice_sin_azimuth_1=twice_sin_azimuth_1, twice_inner_arm_1=twice_inner_arm_1,
+            twice_cos_azimuth_2=twice_cos_azimuth_2, twice_sin_azimuth_2=twice_sin_azimuth_2,
+            twice_inner_arm_2=twice_inner_arm_2, twice_cos_azimuth_3=twice_cos_azimuth_3,
+            twice_sin_azimuth_3=twice_sin_azimuth_3, twice_inner_arm_3=twice_inner_arm_3,
             inner_arm_1_times_sin_azimuth_1_times_2=inner_arm_1_times_sin_azimuth_1_times_2,
             cos_azimuth_1_times_inner_arm_1_times_2=cos_azimuth_1_times_inner_arm_1_times_2,
             inner_arm_2_times_sin_azimuth_2_times_2=inner_arm_2_times_sin_azimuth_2_times_2,
@@ -863,9 +863,6 @@ class DeltaP3CType3(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        twice_inner_arm_1 = k.twice_inner_arm_1
-        twice_inner_arm_2 = k.twice_inner_arm_2
-        twice_inner_arm_3 = k.twice_inner_arm_3
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -880,19 +877,20 @@ class DeltaP3CType3(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
         one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
                 outer_arm_1
                 - root(
@@ -912,19 +910,20 @@ class DeltaP3CType3(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = effective_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
         one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
                 outer_arm_2
                 - root(
@@ -943,19 +942,20 @@ class DeltaP3CType3(OffsetKinematics):
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        swing_scale_a3 = effective_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
-        # 1 - cosine, times the scale
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
         one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
                 outer_arm_3
                 - root(
@@ -967,39 +967,27 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (along_a1*cos_swing_a1 + z*sin_swing_a1)/effective_a1
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
-        rod_1_x = x - pivot_1_x
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
-        rod_1_y = y - pivot_1_y
+        rod_1_x = span_1_x - cos_a1*cos_azimuth_1_times_inner_arm_1
+        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1
         sin_a1 = (along_a1*sin_swing_a1 - z*cos_swing_a1)/effective_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (along_a2*cos_swing_a2 + z*sin_swing_a2)/effective_a2
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
-        rod_2_x = x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
-        rod_2_y = y - pivot_2_y
+        rod_2_x = span_2_x - cos_a2*cos_azimuth_2_times_inner_arm_2
+        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - z*cos_swing_a2)/effective_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = (along_a3*cos_swing_a3 + z*sin_swing_a3)/effective_a3
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
-        rod_3_x = x - pivot_3_x
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
-        rod_3_y = y - pivot_3_y
+        rod_3_x = span_3_x - cos_a3*cos_azimuth_3_times_inner_arm_3
+        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3
         sin_a3 = (along_a3*sin_swing_a3 - z*cos_swing_a3)/effective_a3
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
@@ -1196,8 +1184,8 @@ class DeltaP3CType3(OffsetKinematics):
         rod_3_z = z - pivot_3_z
         margin_rods_coplanar = (
             (
-                rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x) - (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x
-                - rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
+                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
+                + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
             )
             /part_of_margin_rods_coplanar
         )
@@ -1328,22 +1316,22 @@ class DeltaP3CType3(OffsetKinematics):
         y = foot_y + pivot_1_y + normal_y*rise
         slope_1_by_y = 2.0*(sin_azimuth_1_times_tcp_radius_1 + y) - part_of_slope_1_by_y*twice_sin_azimuth_1
         z = foot_z + pivot_1_z + normal_z*rise
-        twice_z = -2.0*z
-        slope_1_by_z = twice_inner_arm_1*sin_a1 - twice_z
+        twice_z = 2.0*z
+        slope_1_by_z = twice_z + twice_inner_arm_1*sin_a1
         part_of_slope_2_by_x = base_radius_2 + inner_arm_2*cos_a2
         slope_2_by_y = 2.0*(sin_azimuth_2_times_tcp_radius_2 + y) - part_of_slope_2_by_x*twice_sin_azimuth_2
-        slope_2_by_z = twice_inner_arm_2*sin_a2 - twice_z
+        slope_2_by_z = twice_z + twice_inner_arm_2*sin_a2
         part_of_slope_3_by_y = base_radius_3 + inner_arm_3*cos_a3
         slope_3_by_y = 2.0*(sin_azimuth_3_times_tcp_radius_3 + y) - part_of_slope_3_by_y*twice_sin_azimuth_3
-        slope_3_by_z = twice_inner_arm_3*sin_a3 - twice_z
-        part_of_determinant = slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z
+        slope_3_by_z = twice_z + twice_inner_arm_3*sin_a3
+        part_of_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y
         slope_2_by_x = 2.0*(cos_azimuth_2_times_tcp_radius_2 + x) - part_of_slope_2_by_x*twice_cos_azimuth_2
         slope_3_by_x = 2.0*(cos_azimuth_3_times_tcp_radius_3 + x) - part_of_slope_3_by_y*twice_cos_azimuth_3
-        part_of_determinant_2 = slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x
+        part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
         part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
-            part_of_determinant_3*slope_1_by_z - part_of_determinant*slope_1_by_x - part_of_determinant_2*slope_1_by_y
+            part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
         )
         # nothing controls the plate
         if not (abs(determinant) > part_of_determinant_divisor):
@@ -1378,12 +1366,12 @@ class DeltaP3CType3(OffsetKinematics):
         part_3 = one_by_determinant_divisor*slope_3_by_a3
         return (
             (
-                part*part_of_determinant,
+                -part*part_of_determinant,
                 part_2*(slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y),
                 (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
             ),
             (
-                part*part_of_determinant_2,
+                -part*part_of_determinant_2,
                 (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*part_2,
                 part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
             ),
@@ -1447,9 +1435,6 @@ class DeltaP3CType3(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        twice_inner_arm_1 = k.twice_inner_arm_1
-        twice_inner_arm_2 = k.twice_inner_arm_2
-        twice_inner_arm_3 = k.twice_inner_arm_3
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -1468,19 +1453,20 @@ class DeltaP3CType3(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
         # square of the third side
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
         one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
                 outer_arm_1
                 - root(
@@ -1500,19 +1486,20 @@ class DeltaP3CType3(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = effective_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
         # square of the third side
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
         one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
                 outer_arm_2
                 - root(
@@ -1531,19 +1518,20 @@ class DeltaP3CType3(OffsetKinematics):
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        swing_scale_a3 = effective_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
         # square of the third side
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
-        # 1 - cosine, times the scale
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
         one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
                 outer_arm_3
                 - root(
@@ -1555,39 +1543,27 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (along_a1*cos_swing_a1 + flange_z*sin_swing_a1)/effective_a1
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
-        rod_1_x = flange_x - pivot_1_x
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
-        rod_1_y = flange_y - pivot_1_y
+        rod_1_x = span_1_x - cos_a1*cos_azimuth_1_times_inner_arm_1
+        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1
         sin_a1 = (along_a1*sin_swing_a1 - flange_z*cos_swing_a1)/effective_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = flange_z - pivot_1_z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (along_a2*cos_swing_a2 + flange_z*sin_swing_a2)/effective_a2
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
-        rod_2_x = flange_x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
-        rod_2_y = flange_y - pivot_2_y
+        rod_2_x = span_2_x - cos_a2*cos_azimuth_2_times_inner_arm_2
+        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - flange_z*cos_swing_a2)/effective_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = flange_z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = (along_a3*cos_swing_a3 + flange_z*sin_swing_a3)/effective_a3
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
-        rod_3_x = flange_x - pivot_3_x
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
-        rod_3_y = flange_y - pivot_3_y
+        rod_3_x = span_3_x - cos_a3*cos_azimuth_3_times_inner_arm_3
+        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3
         sin_a3 = (along_a3*sin_swing_a3 - flange_z*cos_swing_a3)/effective_a3
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         rod_3_z = flange_z - pivot_3_z

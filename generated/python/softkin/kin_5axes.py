@@ -20,9 +20,9 @@ Singularities:
     tool_along_a: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 16 additions, 10 multiplications, 2 divisions, 0 square roots, 4 sines
-    inverse: 63 additions, 60 multiplications, 17 divisions, 3 square roots, 4 sines
-    inverse, all 2 branches open: 93 additions, 75 multiplications, 25 divisions, 4 square roots, 8 sines
+    forward: 14 additions, 10 multiplications, 2 divisions, 0 square roots, 4 sines
+    inverse: 61 additions, 60 multiplications, 17 divisions, 3 square roots, 4 sines
+    inverse, all 2 branches open: 89 additions, 75 multiplications, 25 divisions, 4 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,

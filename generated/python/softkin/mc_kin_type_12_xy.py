@@ -20,9 +20,9 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 30 additions, 35 multiplications, 5 divisions, 2 square roots, 4 sines
-    inverse: 52 additions, 51 multiplications, 16 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 205 additions, 204 multiplications, 64 divisions, 16 square roots, 8 sines
+    forward: 26 additions, 33 multiplications, 5 divisions, 2 square roots, 4 sines
+    inverse: 48 additions, 41 multiplications, 14 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 189 additions, 164 multiplications, 56 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -93,26 +93,29 @@ class Constants(NamedTuple):
     link_length_2_plus_radius_2: float
     link_length_2_minus_radius_2: float
     part_of_along_centres: float
-    part_of_pivot_rear_x: float
     link_length_2_by_link_length_3: float
     link_length_3_by_link_length_2: float
     link_length_2_times_link_length_4: float
     part_of_branch_w: float
+    part_of_pivot_rear_x: float
+    part_of_scaled_pivot_rear_y: float
+    part_of_scaled_pivot_rear_y_2: float
     machine_scale_times_plane: float
     link_length_1_times_shortest_link: float
     link_length_5_times_shortest_link: float
-    twice_link_length_1: float
     link_length_1_minus_link_length_2: float
     link_length_1_plus_link_length_2: float
-    twice_link_length_5: float
     link_length_5_minus_link_length_4: float
     link_length_4_plus_link_length_5: float
     part_of_type2_arms_aligned: float
+    part_of_along_a2: float
     part_of_margin_arms_aligned: float
     machine_scale_squared_times_free_angle: float
+    twice_link_length_1: float
     part_of_slope_2_by_x: float
     link_length_3_times_2_by_link_length_2: float
     part_of_slope_2_by_a1: float
+    twice_link_length_5: float
 
 
 class KinType12XY(OffsetKinematics):
@@ -332,27 +335,31 @@ class KinType12XY(OffsetKinematics):
         link_length_2_plus_radius_2 = link_length_2 + radius_2
         link_length_2_minus_radius_2 = link_length_2 - radius_2
         part_of_along_centres = link_length_2_minus_radius_2*link_length_2_plus_radius_2
-        part_of_pivot_rear_x = link_length_1*link_length_3/link_length_2
         link_length_2_by_link_length_3 = link_length_2/link_length_3
         link_length_3_by_link_length_2 = link_length_3/link_length_2
         link_length_2_times_link_length_4 = link_length_2*link_length_4
-        part_of_branch_w = link_length_1*(link_length_2 + link_length_3)
+        link_length_2_plus_link_length_3 = link_length_2 + link_length_3
+        part_of_branch_w = link_length_1*link_length_2_plus_link_length_3
+        part_of_pivot_rear_x = link_length_1 + link_length_1*link_length_3/link_length_2
+        part_of_scaled_pivot_rear_y = link_length_2*part_of_pivot_rear_x/link_length_3
+        part_of_scaled_pivot_rear_y_2 = link_length_2*link_length_5/link_length_3
         machine_scale_times_plane = 1e-6*machine_scale
         link_length_1_times_shortest_link = 1e-9*link_length_1
         link_length_5_times_shortest_link = 1e-9*link_length_5
-        twice_link_length_1 = 2.0*link_length_1
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        twice_link_length_5 = 2.0*link_length_5
         link_length_5_minus_link_length_4 = link_length_5 - link_length_4
         link_length_4_plus_link_length_5 = link_length_4 + link_length_5
         part_of_type2_arms_aligned = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
+        part_of_along_a2 = link_length_1*link_length_2_plus_link_length_3/link_length_2
         part_of_margin_arms_aligned = link_length_3/(link_length_4*link_length_2*link_length_2)
         machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
+        twice_link_length_1 = 2.0*link_length_1
         link_length_3_by_link_length_2_plus_one = 1.0 + link_length_3_by_link_length_2
         part_of_slope_2_by_x = link_length_1*link_length_3_by_link_length_2_plus_one
         link_length_3_times_2_by_link_length_2 = 2.0*link_length_3/link_length_2
         part_of_slope_2_by_a1 = 2.0*link_length_1*link_length_3_by_link_length_2_plus_one
+        twice_link_length_5 = 2.0*link_length_5
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, link_length_3=link_length_3,
             link_length_4=link_length_4, link_length_5=link_length_5, swap_xy=swap_xy, offset_a1=offset_a1,
@@ -365,24 +372,24 @@ class KinType12XY(OffsetKinematics):
             link_length_2_squared_times_rounding=link_length_2_squared_times_rounding,
             link_length_2_plus_radius_2=link_length_2_plus_radius_2,
             link_length_2_minus_radius_2=link_length_2_minus_radius_2, part_of_along_centres=part_of_along_centres,
-            part_of_pivot_rear_x=part_of_pivot_rear_x, link_length_2_by_link_length_3=link_length_2_by_link_length_3,
+            link_length_2_by_link_length_3=link_length_2_by_link_length_3,
             link_length_3_by_link_length_2=link_length_3_by_link_length_2,
             link_length_2_times_link_length_4=link_length_2_times_link_length_4, part_of_branch_w=part_of_branch_w,
+            part_of_pivot_rear_x=part_of_pivot_rear_x, part_of_scaled_pivot_rear_y=part_of_scaled_pivot_rear_y,
+            part_of_scaled_pivot_rear_y_2=part_of_scaled_pivot_rear_y_2,
             machine_scale_times_plane=machine_scale_times_plane,
             link_length_1_times_shortest_link=link_length_1_times_shortest_link,
             link_length_5_times_shortest_link=link_length_5_times_shortest_link,
-            twice_link_length_1=twice_link_length_1,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
-            twice_link_length_5=twice_link_length_5,
             link_length_5_minus_link_length_4=link_length_5_minus_link_length_4,
             link_length_4_plus_link_length_5=link_length_4_plus_link_length_5,
-            part_of_type2_arms_aligned=part_of_type2_arms_aligned,
+            part_of_type2_arms_aligned=part_of_type2_arms_aligned, part_of_along_a2=part_of_along_a2,
             part_of_margin_arms_aligned=part_of_margin_arms_aligned,
             machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
-            part_of_slope_2_by_x=part_of_slope_2_by_x,
+            twice_link_length_1=twice_link_length_1, part_of_slope_2_by_x=part_of_slope_2_by_x,
             link_length_3_times_2_by_link_length_2=link_length_3_times_2_by_link_length_2,
-            part_of_slope_2_by_a1=part_of_slope_2_by_a1,
+            part_of_slope_2_by_a1=part_of_slope_2_by_a1, twice_link_length_5=twice_link_length_5,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -392,19 +399,18 @@ class KinType12XY(OffsetKinematics):
         assembly_sign = k.assembly_sign
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
-        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         part_of_along_centres = k.part_of_along_centres
         part_of_branch_w = k.part_of_branch_w
         part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
+        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -414,20 +420,22 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        if swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_1_y = pivot_upper_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
         sin_a2 = sin(a2)
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_2_x = -scaled_pivot_rear_y
+            centre_1_y = pivot_upper_x
+            centre_2_y = -scaled_pivot_rear_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_2_x = -scaled_pivot_rear_x
+            centre_1_y = pivot_upper_y
+            centre_2_y = -scaled_pivot_rear_y
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -475,15 +483,14 @@ class KinType12XY(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         link_length_1 = k.link_length_1
-        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
-        link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
+        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -493,20 +500,22 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        if swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_1_y = pivot_upper_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
         sin_a2 = sin(a2)
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_2_x = -scaled_pivot_rear_y
+            centre_1_y = pivot_upper_x
+            centre_2_y = -scaled_pivot_rear_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_2_x = -scaled_pivot_rear_x
+            centre_1_y = pivot_upper_y
+            centre_2_y = -scaled_pivot_rear_y
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -537,11 +546,8 @@ class KinType12XY(OffsetKinematics):
         link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
-        link_length_2 = k.link_length_2
-        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
-        link_length_5 = k.link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane = k.machine_scale_times_plane
@@ -550,14 +556,13 @@ class KinType12XY(OffsetKinematics):
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_branch_w = k.part_of_branch_w
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_along_a2 = k.part_of_along_a2
+        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
+        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         swap_xy = k.swap_xy
-        twice_link_length_1 = k.twice_link_length_1
-        twice_link_length_5 = k.twice_link_length_5
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -580,8 +585,7 @@ class KinType12XY(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (effective_a1 + link_length_1_minus_link_length_2)*(effective_a1 + link_length_1_plus_link_length_2)
         )
@@ -589,9 +593,11 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a1 = (
             (link_length_1_plus_link_length_2 - effective_a1)*(effective_a1 - link_length_1_minus_link_length_2)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a1 - link_length_1_minus_link_length_2)
                 + 0.5*abs(effective_a1 + link_length_1_minus_link_length_2)
@@ -600,22 +606,19 @@ class KinType12XY(OffsetKinematics):
                 - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
-        along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
+        along_a2 = span_rear_x - part_of_along_a2*sin_a1
         cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
-        across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
+        across_a2 = part_of_along_a2*cos_a1 - span_rear_y
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > link_length_5_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = effective_a2*twice_link_length_5  # a2: law of cosines in the rod rear equation
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (effective_a2 + link_length_4_plus_link_length_5)*(effective_a2 + link_length_5_minus_link_length_4)
         )
@@ -623,9 +626,11 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a2 = (
             (link_length_4_plus_link_length_5 - effective_a2)*(effective_a2 - link_length_5_minus_link_length_4)
         )
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a2 - link_length_4_plus_link_length_5)
                 + 0.5*abs(effective_a2 + link_length_4_plus_link_length_5)
@@ -636,25 +641,25 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
+        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
+        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/effective_a2
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
+            centre_2_x = -scaled_pivot_rear_y
+            centre_2_y = -scaled_pivot_rear_x
         else:
             centre_1_x = pivot_upper_x
             centre_1_y = pivot_upper_y
+            centre_2_x = -scaled_pivot_rear_x
+            centre_2_y = -scaled_pivot_rear_y
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
-        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
-        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/effective_a2
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = (-pivot_rear_y if swap_xy else -pivot_rear_x)*link_length_2_by_link_length_3
         rod_2_x = x - centre_2_x
-        centre_2_y = (-pivot_rear_x if swap_xy else -pivot_rear_y)*link_length_2_by_link_length_3
         rod_2_y = y - centre_2_y
         type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -714,20 +719,19 @@ class KinType12XY(OffsetKinematics):
         assembly_sign = k.assembly_sign
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
-        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         part_of_along_centres = k.part_of_along_centres
         part_of_branch_w = k.part_of_branch_w
         part_of_margin_arms_aligned = k.part_of_margin_arms_aligned
         part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
+        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -737,20 +741,22 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        if swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_1_y = pivot_upper_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
         sin_a2 = sin(a2)
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_2_x = -scaled_pivot_rear_y
+            centre_1_y = pivot_upper_x
+            centre_2_y = -scaled_pivot_rear_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_2_x = -scaled_pivot_rear_x
+            centre_1_y = pivot_upper_y
+            centre_2_y = -scaled_pivot_rear_y
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
@@ -839,10 +845,10 @@ class KinType12XY(OffsetKinematics):
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         cos_a2_times_link_length_5 = link_length_5*cos_a2
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - cos_a2_times_link_length_5 - pivot_upper_x  # rod rear
+        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - cos_a2_times_link_length_5  # rod rear
         sin_a2 = sin(a2)
         link_length_5_times_sin_a2 = link_length_5*sin_a2
-        pivot_rear_y = link_length_5_times_sin_a2 + part_of_pivot_rear_x*cos_a1 - pivot_upper_y  # rod rear
+        pivot_rear_y = link_length_5_times_sin_a2 + part_of_pivot_rear_x*cos_a1  # rod rear
         centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
         apart_2_x = centre_2_x - centre_1_x
         centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
@@ -869,27 +875,27 @@ class KinType12XY(OffsetKinematics):
         foot_x = along_centres*apart_2_x
         rise = root(height_square*one_by_normal_square)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
-        twice_x = -2.0*x
+        twice_x = 2.0*x
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
-        twice_y = -2.0*y
+        twice_y = 2.0*y
         if swap_xy:
-            slope_1_by_x = twice_link_length_1_times_cos_a1 - twice_x
-            slope_1_by_y = twice_link_length_1_times_sin_a1 - twice_y
+            slope_1_by_x = twice_link_length_1_times_cos_a1 + twice_x
+            slope_1_by_y = twice_link_length_1_times_sin_a1 + twice_y
         else:
-            slope_1_by_x = twice_link_length_1_times_sin_a1 - twice_x
-            slope_1_by_y = twice_link_length_1_times_cos_a1 - twice_y
-        link_length_3_by_link_length_2_times_x = -link_length_3_by_link_length_2*x
+            slope_1_by_x = twice_link_length_1_times_sin_a1 + twice_x
+            slope_1_by_y = twice_link_length_1_times_cos_a1 + twice_y
+        link_length_3_by_link_length_2_times_x = link_length_3_by_link_length_2*x
         part_of_slope_2_by_y = cos_a2_times_link_length_5 - part_of_slope_2_by_x*sin_a1
-        part_of_slope_2_by_x_2 = link_length_3_by_link_length_2_times_x + part_of_slope_2_by_y
+        part_of_slope_2_by_x_2 = part_of_slope_2_by_y - link_length_3_by_link_length_2_times_x
         part_of_slope_2_by_y_2 = link_length_5_times_sin_a2 + part_of_slope_2_by_x*cos_a1
-        part_of_slope_2_by_x_3 = part_of_slope_2_by_y_2 - link_length_3_by_link_length_2_times_x
+        part_of_slope_2_by_x_3 = link_length_3_by_link_length_2_times_x + part_of_slope_2_by_y_2
         slope_2_by_x = (
             -(-part_of_slope_2_by_x_3 if swap_xy else part_of_slope_2_by_x_2)*link_length_3_times_2_by_link_length_2
         )
-        link_length_3_by_link_length_2_times_y = -link_length_3_by_link_length_2*y
-        part_of_slope_2_by_y_3 = part_of_slope_2_by_y_2 - link_length_3_by_link_length_2_times_y
-        part_of_slope_2_by_y_4 = link_length_3_by_link_length_2_times_y + part_of_slope_2_by_y
+        link_length_3_by_link_length_2_times_y = link_length_3_by_link_length_2*y
+        part_of_slope_2_by_y_3 = link_length_3_by_link_length_2_times_y + part_of_slope_2_by_y_2
+        part_of_slope_2_by_y_4 = part_of_slope_2_by_y - link_length_3_by_link_length_2_times_y
         slope_2_by_y = (
             -(part_of_slope_2_by_y_4 if swap_xy else -part_of_slope_2_by_y_3)*link_length_3_times_2_by_link_length_2
         )
@@ -907,15 +913,15 @@ class KinType12XY(OffsetKinematics):
             slope_2_by_a1 = (-part_of_slope_2_by_x_2*cos_a1 - part_of_slope_2_by_y_3*sin_a1)*part_of_slope_2_by_a1
             slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_y_3*cos_a2 - part_of_slope_2_by_x_2*sin_a2)
         one_by_determinant = 1.0/determinant
-        slope_2_by_a2_times_one_by_determinant = -one_by_determinant*slope_2_by_a2
+        slope_2_by_a2_times_one_by_determinant = one_by_determinant*slope_2_by_a2
         return (
             (
                 (slope_1_by_y*slope_2_by_a1 - slope_1_by_a1*slope_2_by_y)*one_by_determinant,
-                -slope_1_by_y*slope_2_by_a2_times_one_by_determinant,
+                slope_1_by_y*slope_2_by_a2_times_one_by_determinant,
             ),
             (
                 one_by_determinant*(slope_1_by_a1*slope_2_by_x - slope_1_by_x*slope_2_by_a1),
-                slope_1_by_x*slope_2_by_a2_times_one_by_determinant,
+                -slope_1_by_x*slope_2_by_a2_times_one_by_determinant,
             ),
         )
 
@@ -937,11 +943,8 @@ class KinType12XY(OffsetKinematics):
         link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
-        link_length_2 = k.link_length_2
-        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
-        link_length_5 = k.link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane = k.machine_scale_times_plane
@@ -950,14 +953,13 @@ class KinType12XY(OffsetKinematics):
         min_type2_margin = k.min_type2_margin
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_branch_w = k.part_of_branch_w
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_along_a2 = k.part_of_along_a2
+        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
+        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         swap_xy = k.swap_xy
-        twice_link_length_1 = k.twice_link_length_1
-        twice_link_length_5 = k.twice_link_length_5
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -982,8 +984,7 @@ class KinType12XY(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (effective_a1 + link_length_1_minus_link_length_2)*(effective_a1 + link_length_1_plus_link_length_2)
         )
@@ -991,9 +992,11 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a1 = (
             (link_length_1_plus_link_length_2 - effective_a1)*(effective_a1 - link_length_1_minus_link_length_2)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a1 - link_length_1_minus_link_length_2)
                 + 0.5*abs(effective_a1 + link_length_1_minus_link_length_2)
@@ -1002,22 +1005,19 @@ class KinType12XY(OffsetKinematics):
                 - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
-        along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
+        along_a2 = span_rear_x - part_of_along_a2*sin_a1
         cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
-        across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
+        across_a2 = part_of_along_a2*cos_a1 - span_rear_y
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > link_length_5_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = effective_a2*twice_link_length_5  # a2: law of cosines in the rod rear equation
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (effective_a2 + link_length_4_plus_link_length_5)*(effective_a2 + link_length_5_minus_link_length_4)
         )
@@ -1025,9 +1025,11 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a2 = (
             (link_length_4_plus_link_length_5 - effective_a2)*(effective_a2 - link_length_5_minus_link_length_4)
         )
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a2 - link_length_4_plus_link_length_5)
                 + 0.5*abs(effective_a2 + link_length_4_plus_link_length_5)
@@ -1038,25 +1040,25 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
+        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
+        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/effective_a2
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
+            centre_2_x = -scaled_pivot_rear_y
+            centre_2_y = -scaled_pivot_rear_x
         else:
             centre_1_x = pivot_upper_x
             centre_1_y = pivot_upper_y
+            centre_2_x = -scaled_pivot_rear_x
+            centre_2_y = -scaled_pivot_rear_y
         rod_1_x = flange_x - centre_1_x
         rod_1_y = flange_y - centre_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
-        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
-        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/effective_a2
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = (-pivot_rear_y if swap_xy else -pivot_rear_x)*link_length_2_by_link_length_3
         rod_2_x = flange_x - centre_2_x
-        centre_2_y = (-pivot_rear_x if swap_xy else -pivot_rear_y)*link_length_2_by_link_length_3
         rod_2_y = flange_y - centre_2_y
         type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -1084,19 +1086,18 @@ class KinType12XY(OffsetKinematics):
         assembly_sign = k.assembly_sign
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
-        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         part_of_along_centres = k.part_of_along_centres
         part_of_branch_w = k.part_of_branch_w
         part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
+        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
+        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -1106,20 +1107,22 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        if swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_1_y = pivot_upper_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_1_y = pivot_upper_y
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
         sin_a2 = sin(a2)
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_2_x = -scaled_pivot_rear_y
+            centre_1_y = pivot_upper_x
+            centre_2_y = -scaled_pivot_rear_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_2_x = -scaled_pivot_rear_x
+            centre_1_y = pivot_upper_y
+            centre_2_y = -scaled_pivot_rear_y
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate

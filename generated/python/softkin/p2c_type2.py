@@ -20,9 +20,9 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 25 additions, 21 multiplications, 6 divisions, 2 square roots, 4 sines
-    inverse: 50 additions, 40 multiplications, 14 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 197 additions, 160 multiplications, 56 divisions, 16 square roots, 8 sines
+    forward: 23 additions, 21 multiplications, 6 divisions, 2 square roots, 4 sines
+    inverse: 46 additions, 34 multiplications, 14 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 181 additions, 136 multiplications, 56 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -92,12 +92,12 @@ class Constants(NamedTuple):
     part_of_pivot_1_x: float
     machine_scale_times_plane: float
     inner_arm_times_shortest_link: float
-    twice_inner_arm: float
     inner_arm_plus_outer_arm: float
     inner_arm_minus_outer_arm: float
     assembly_sign_by_outer_arm_squared: float
     outer_arm_squared: float
     machine_scale_squared_times_free_angle: float
+    twice_inner_arm: float
     part_of_slope_1_by_x: float
 
 
@@ -292,12 +292,12 @@ class P2CType2(OffsetKinematics):
         part_of_pivot_1_x = 0.5*tcp_link_distance - displacement
         machine_scale_times_plane = 1e-6*machine_scale
         inner_arm_times_shortest_link = 1e-9*inner_arm
-        twice_inner_arm = 2.0*inner_arm
         inner_arm_plus_outer_arm = inner_arm + outer_arm
         inner_arm_minus_outer_arm = inner_arm - outer_arm
         assembly_sign_by_outer_arm_squared = assembly_sign/(outer_arm*outer_arm)
         outer_arm_squared = outer_arm*outer_arm
         machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
+        twice_inner_arm = 2.0*inner_arm
         part_of_slope_1_by_x = tcp_link_distance - 2.0*displacement
         return Constants(
             inner_arm=inner_arm, outer_arm=outer_arm, displacement=displacement, tcp_link_distance=tcp_link_distance,
@@ -309,12 +309,12 @@ class P2CType2(OffsetKinematics):
             assembly_sign=assembly_sign, part_of_normal_divisor=part_of_normal_divisor,
             twice_outer_arm=twice_outer_arm, outer_arm_squared_times_rounding=outer_arm_squared_times_rounding,
             part_of_pivot_1_x=part_of_pivot_1_x, machine_scale_times_plane=machine_scale_times_plane,
-            inner_arm_times_shortest_link=inner_arm_times_shortest_link, twice_inner_arm=twice_inner_arm,
+            inner_arm_times_shortest_link=inner_arm_times_shortest_link,
             inner_arm_plus_outer_arm=inner_arm_plus_outer_arm, inner_arm_minus_outer_arm=inner_arm_minus_outer_arm,
             assembly_sign_by_outer_arm_squared=assembly_sign_by_outer_arm_squared,
             outer_arm_squared=outer_arm_squared,
             machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
-            part_of_slope_1_by_x=part_of_slope_1_by_x,
+            twice_inner_arm=twice_inner_arm, part_of_slope_1_by_x=part_of_slope_1_by_x,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -433,7 +433,6 @@ class P2CType2(OffsetKinematics):
         part_of_pivot_1_x = k.part_of_pivot_1_x
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        twice_inner_arm = k.twice_inner_arm
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -450,14 +449,15 @@ class P2CType2(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_inner_arm  # a1: law of cosines in the rod 1 equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = (inner_arm_plus_outer_arm - effective_a1)*(effective_a1 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm)*(effective_a1 + inner_arm_plus_outer_arm)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a1 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_minus_outer_arm)
                 + 0.5*abs(effective_a1 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_plus_outer_arm)
@@ -469,37 +469,32 @@ class P2CType2(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = effective_a2*twice_inner_arm  # a2: law of cosines in the rod 2 equation
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2)*(effective_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)*(effective_a2 + inner_arm_plus_outer_arm)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a2 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_minus_outer_arm)
                 + 0.5*abs(effective_a2 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_plus_outer_arm)
                 - effective_a2 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/effective_a1
-        pivot_1_x = part_of_pivot_1_x + inner_arm*cos_a1  # rod 1
-        rod_1_x = x - pivot_1_x
+        rod_1_x = span_1_x - inner_arm*cos_a1
         sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (span_2_x*cos_swing_a2 - y*sin_swing_a2)/effective_a2
-        pivot_2_x = inner_arm*cos_a2 - part_of_pivot_1_x  # rod 2
-        rod_2_x = x - pivot_2_x
+        rod_2_x = span_2_x - inner_arm*cos_a2
         sin_a2 = (y*cos_swing_a2 + span_2_x*sin_swing_a2)/effective_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
         rod_2_y = y - pivot_2_y
@@ -708,7 +703,6 @@ class P2CType2(OffsetKinematics):
         part_of_pivot_1_x = k.part_of_pivot_1_x
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        twice_inner_arm = k.twice_inner_arm
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -727,14 +721,15 @@ class P2CType2(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_inner_arm  # a1: law of cosines in the rod 1 equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = (inner_arm_plus_outer_arm - effective_a1)*(effective_a1 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm)*(effective_a1 + inner_arm_plus_outer_arm)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a1 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_minus_outer_arm)
                 + 0.5*abs(effective_a1 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_plus_outer_arm)
@@ -746,37 +741,32 @@ class P2CType2(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = effective_a2*twice_inner_arm  # a2: law of cosines in the rod 2 equation
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2)*(effective_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)*(effective_a2 + inner_arm_plus_outer_arm)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a2 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_minus_outer_arm)
                 + 0.5*abs(effective_a2 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_plus_outer_arm)
                 - effective_a2 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - flange_y*sin_swing_a1)/effective_a1
-        pivot_1_x = part_of_pivot_1_x + inner_arm*cos_a1  # rod 1
-        rod_1_x = flange_x - pivot_1_x
+        rod_1_x = span_1_x - inner_arm*cos_a1
         sin_a1 = (flange_y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = flange_y - pivot_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (span_2_x*cos_swing_a2 - flange_y*sin_swing_a2)/effective_a2
-        pivot_2_x = inner_arm*cos_a2 - part_of_pivot_1_x  # rod 2
-        rod_2_x = flange_x - pivot_2_x
+        rod_2_x = span_2_x - inner_arm*cos_a2
         sin_a2 = (flange_y*cos_swing_a2 + span_2_x*sin_swing_a2)/effective_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
         rod_2_y = flange_y - pivot_2_y

@@ -17,9 +17,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 13 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 38 additions, 22 multiplications, 9 divisions, 2 square roots, 4 sines
-    inverse, all 2 branches open: 72 additions, 42 multiplications, 17 divisions, 4 square roots, 8 sines
+    forward: 11 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
+    inverse: 36 additions, 22 multiplications, 9 divisions, 2 square roots, 4 sines
+    inverse, all 2 branches open: 68 additions, 42 multiplications, 17 divisions, 4 square roots, 8 sines
 
 Angles are right-handed about +Z.
 
@@ -85,9 +85,7 @@ class Constants(NamedTuple):
     lowest_elbow: float
     highest_elbow: float
     machine_scale: float
-    scale_a2_from_a1: float
     machine_scale_times_plane: float
-    scale_a2_from_a1_squared_times_rounding: float
     machine_scale_times_free_angle: float
     link_length_1_plus_link_length_2: float
     link_length_1_minus_link_length_2: float
@@ -267,9 +265,7 @@ class PCC(OffsetKinematics):
         lowest_elbow = -1e12 if unlimited_elbow else effective_lower_elbow - tolerance_elbow
         highest_elbow = 1e12 if unlimited_elbow else effective_upper_elbow + tolerance_elbow
         machine_scale = link_length_1 + link_length_2  # a length of the machine
-        scale_a2_from_a1 = 2.0*link_length_1*link_length_2  # a2_from_a1: law of cosines in the x² + y² equation
         machine_scale_times_plane = 1e-6*machine_scale
-        scale_a2_from_a1_squared_times_rounding = 1e-12*scale_a2_from_a1*scale_a2_from_a1
         machine_scale_times_free_angle = 1e-11*machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
@@ -280,9 +276,8 @@ class PCC(OffsetKinematics):
             lower_a2=effective_lower_a2, upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2,
             highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, lower_elbow=effective_lower_elbow,
             upper_elbow=effective_upper_elbow, unlimited_elbow=unlimited_elbow, lowest_elbow=lowest_elbow,
-            highest_elbow=highest_elbow, machine_scale=machine_scale, scale_a2_from_a1=scale_a2_from_a1,
+            highest_elbow=highest_elbow, machine_scale=machine_scale,
             machine_scale_times_plane=machine_scale_times_plane,
-            scale_a2_from_a1_squared_times_rounding=scale_a2_from_a1_squared_times_rounding,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
@@ -337,7 +332,6 @@ class PCC(OffsetKinematics):
         mid_a2 = k.mid_a2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        scale_a2_from_a1_squared_times_rounding = k.scale_a2_from_a1_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         # numbers of reasonable size
@@ -351,7 +345,7 @@ class PCC(OffsetKinematics):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         reach = sqrt(x*x + y*y)
-        # 1 - cosine, times the scale
+        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         )
@@ -359,9 +353,12 @@ class PCC(OffsetKinematics):
         one_plus_cos_a2_from_a1 = (
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         )
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
+        # twice the scale, with the rounding of its parts
+        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
         # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
+        if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             missing = (
                 0.5*(
                     abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
@@ -370,10 +367,7 @@ class PCC(OffsetKinematics):
                 - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
-        # twice the scale, with the rounding of its parts
-        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         sin_a2_from_a1 = (
             2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
         )
@@ -540,7 +534,6 @@ class PCC(OffsetKinematics):
         mid_a2 = k.mid_a2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        scale_a2_from_a1_squared_times_rounding = k.scale_a2_from_a1_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         # numbers of reasonable size
@@ -556,7 +549,7 @@ class PCC(OffsetKinematics):
         flange_x = x - point_x  # the flange behind the point
         flange_y = y - point_y  # the flange behind the point
         reach = sqrt(flange_x*flange_x + flange_y*flange_y)
-        # 1 - cosine, times the scale
+        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         )
@@ -564,9 +557,12 @@ class PCC(OffsetKinematics):
         one_plus_cos_a2_from_a1 = (
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         )
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
+        # twice the scale, with the rounding of its parts
+        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
         # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
+        if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             missing = (
                 0.5*(
                     abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
@@ -575,10 +571,7 @@ class PCC(OffsetKinematics):
                 - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
-        # twice the scale, with the rounding of its parts
-        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         sin_a2_from_a1 = (
             2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
         )

@@ -20,9 +20,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 29 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
-    inverse: 67 additions, 49 multiplications, 15 divisions, 5 square roots, 7 sines
-    inverse, all 4 branches open: 265 additions, 196 multiplications, 60 divisions, 20 square roots, 28 sines
+    forward: 26 additions, 26 multiplications, 4 divisions, 0 square roots, 8 sines
+    inverse: 64 additions, 49 multiplications, 15 divisions, 5 square roots, 7 sines
+    inverse, all 4 branches open: 253 additions, 196 multiplications, 60 divisions, 20 square roots, 28 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -95,20 +95,18 @@ class Constants(NamedTuple):
     machine_scale: float
     effective_q3_2: float
     rounding_q1: float
-    swing_scale_q3_2: float
     size_q1_for_q3_2: float
+    d4_by_effective_q3_2: float
+    a3_by_effective_q3_2: float
     a2_squared: float
     size_q1_for_q3_2_times_rounding: float
     machine_scale_times_free_angle: float
     machine_scale_squared_times_plane: float
     machine_scale_times_rounding: float
-    swing_scale_q3_2_squared_times_rounding: float
     a2_squared_plus_effective_q3_2_squared: float
     twice_d3: float
     a2_plus_effective_q3_2: float
     a2_minus_effective_q3_2: float
-    d4_by_effective_q3_2: float
-    a3_by_effective_q3_2: float
     a2_times_shortest_link: float
     twice_a2: float
 
@@ -319,20 +317,18 @@ class PosRRR(OffsetKinematics):
         machine_scale = a1 + a2 + a3 + d4  # a length of the machine
         effective_q3_2 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
-        swing_scale_q3_2 = 2.0*a2*effective_q3_2  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         size_q1_for_q3_2 = 2.0*abs(effective_q3_2)*a2
+        d4_by_effective_q3_2 = d4/effective_q3_2
+        a3_by_effective_q3_2 = a3/effective_q3_2
         a2_squared = a2*a2
         size_q1_for_q3_2_times_rounding = 1e-12*size_q1_for_q3_2
         machine_scale_times_free_angle = 1e-11*machine_scale
         machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
         machine_scale_times_rounding = 1e-12*machine_scale
-        swing_scale_q3_2_squared_times_rounding = 1e-12*swing_scale_q3_2*swing_scale_q3_2
         a2_squared_plus_effective_q3_2_squared = a2_squared + effective_q3_2*effective_q3_2
         twice_d3 = 2.0*d3
         a2_plus_effective_q3_2 = a2 + effective_q3_2
         a2_minus_effective_q3_2 = a2 - effective_q3_2
-        d4_by_effective_q3_2 = d4/effective_q3_2
-        a3_by_effective_q3_2 = a3/effective_q3_2
         a2_times_shortest_link = 1e-9*a2
         twice_a2 = 2.0*a2
         return Constants(
@@ -343,15 +339,14 @@ class PosRRR(OffsetKinematics):
             highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3,
             upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
             single_a3=single_a3, mid_a3=mid_a3, machine_scale=machine_scale, effective_q3_2=effective_q3_2,
-            rounding_q1=rounding_q1, swing_scale_q3_2=swing_scale_q3_2, size_q1_for_q3_2=size_q1_for_q3_2,
-            a2_squared=a2_squared, size_q1_for_q3_2_times_rounding=size_q1_for_q3_2_times_rounding,
+            rounding_q1=rounding_q1, size_q1_for_q3_2=size_q1_for_q3_2, d4_by_effective_q3_2=d4_by_effective_q3_2,
+            a3_by_effective_q3_2=a3_by_effective_q3_2, a2_squared=a2_squared,
+            size_q1_for_q3_2_times_rounding=size_q1_for_q3_2_times_rounding,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
             machine_scale_squared_times_plane=machine_scale_squared_times_plane,
             machine_scale_times_rounding=machine_scale_times_rounding,
-            swing_scale_q3_2_squared_times_rounding=swing_scale_q3_2_squared_times_rounding,
             a2_squared_plus_effective_q3_2_squared=a2_squared_plus_effective_q3_2_squared, twice_d3=twice_d3,
             a2_plus_effective_q3_2=a2_plus_effective_q3_2, a2_minus_effective_q3_2=a2_minus_effective_q3_2,
-            d4_by_effective_q3_2=d4_by_effective_q3_2, a3_by_effective_q3_2=a3_by_effective_q3_2,
             a2_times_shortest_link=a2_times_shortest_link, twice_a2=twice_a2,
         )
 
@@ -362,10 +357,11 @@ class PosRRR(OffsetKinematics):
         a1 = k.a1
         a2 = k.a2
         a3 = k.a3
+        a3_by_effective_q3_2 = k.a3_by_effective_q3_2
         d1 = k.d1
         d3 = k.d3
         d4 = k.d4
-        effective_q3_2 = k.effective_q3_2
+        d4_by_effective_q3_2 = k.d4_by_effective_q3_2
         machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
@@ -400,7 +396,7 @@ class PosRRR(OffsetKinematics):
         branch_arm = (x*cos_q1 + y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = (d4*cos_q3 - a3*sin_q3)/effective_q3_2
+        branch_elbow = d4_by_effective_q3_2*cos_q3 - a3_by_effective_q3_2*sin_q3
         return (
             (x, y, z),
             ((r11_at_q23, sin_q1, -r12_at_q23), (r21_at_q23, -cos_q1, -r22_at_q23), (cos_q23, 0.0, sin_q23)),
@@ -465,7 +461,6 @@ class PosRRR(OffsetKinematics):
         single_a3 = k.single_a3
         size_q1_for_q3_2 = k.size_q1_for_q3_2
         size_q1_for_q3_2_times_rounding = k.size_q1_for_q3_2_times_rounding
-        swing_scale_q3_2_squared_times_rounding = k.swing_scale_q3_2_squared_times_rounding
         twice_d3 = k.twice_d3
         # numbers of reasonable size
         if not (
@@ -536,13 +531,15 @@ class PosRRR(OffsetKinematics):
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         # q3: out of reach
-        if not (sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding):
+        if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
                 0.5*(
                     abs(a2_minus_effective_q3_2 - reach) + abs(a2_minus_effective_q3_2 + reach)
@@ -573,10 +570,8 @@ class PosRRR(OffsetKinematics):
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3_2*sin_swing_q3
@@ -653,9 +648,10 @@ class PosRRR(OffsetKinematics):
         a1 = k.a1
         a2 = k.a2
         a3 = k.a3
+        a3_by_effective_q3_2 = k.a3_by_effective_q3_2
         d3 = k.d3
         d4 = k.d4
-        effective_q3_2 = k.effective_q3_2
+        d4_by_effective_q3_2 = k.d4_by_effective_q3_2
         machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
@@ -687,7 +683,7 @@ class PosRRR(OffsetKinematics):
         margin_point_on_axis_1 = (x*cos_q1 + y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = (d4*cos_q3 - a3*sin_q3)/effective_q3_2
+        margin_elbow = d4_by_effective_q3_2*cos_q3 - a3_by_effective_q3_2*sin_q3
         return (margin_point_on_axis_1, margin_elbow)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -846,7 +842,6 @@ class PosRRR(OffsetKinematics):
         # q3: its effective length is too short
         if not (effective_q3 > a2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        swing_scale_q3 = effective_q3*twice_a2  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind
@@ -905,13 +900,16 @@ class PosRRR(OffsetKinematics):
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
         a2_plus_effective_q3 = a2 + effective_q3
-        one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)
         a2_minus_effective_q3 = a2 - effective_q3
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         # q3: out of reach
-        if not (sine_square_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
+        if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
                 0.5*(
                     abs(a2_minus_effective_q3 - reach) + abs(a2_minus_effective_q3 + reach)
@@ -942,9 +940,7 @@ class PosRRR(OffsetKinematics):
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
         cos_q3 = (tool_x*cos_swing_q3 + tool_y*sin_swing_q3)/effective_q3
         sin_q3 = (tool_x*sin_swing_q3 - tool_y*cos_swing_q3)/effective_q3

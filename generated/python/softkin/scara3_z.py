@@ -19,9 +19,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 22 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 85 additions, 72 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 137 additions, 99 multiplications, 35 divisions, 8 square roots, 10 sines
+    forward: 19 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
+    inverse: 82 additions, 72 multiplications, 22 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 131 additions, 99 multiplications, 35 divisions, 8 square roots, 10 sines
 
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
 
@@ -97,8 +97,6 @@ class Constants(NamedTuple):
     lowest_z: float
     highest_z: float
     machine_scale: float
-    scale_a2: float
-    scale_a2_squared_times_rounding: float
     machine_scale_times_free_angle: float
     arm_length_1_plus_arm_length_2: float
     arm_length_1_minus_arm_length_2: float
@@ -317,8 +315,6 @@ class Scara3Z(TwistChoice):
         lowest_z = -1e12 if unlimited_z else effective_lower_z - tolerance_z
         highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
         machine_scale = arm_length_1 + arm_length_2 + arm_length_3  # a length of the machine
-        scale_a2 = 2.0*arm_length_1*arm_length_2  # a2: law of cosines in the x² + y² equation
-        scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
         machine_scale_times_free_angle = 1e-11*machine_scale
         arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
@@ -331,8 +327,7 @@ class Scara3Z(TwistChoice):
             single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3, upper_a3=effective_upper_a3,
             unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3, single_a3=single_a3, mid_a3=mid_a3,
             lower_z=effective_lower_z, upper_z=effective_upper_z, unlimited_z=unlimited_z, lowest_z=lowest_z,
-            highest_z=highest_z, machine_scale=machine_scale, scale_a2=scale_a2,
-            scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
+            highest_z=highest_z, machine_scale=machine_scale,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
             arm_length_1_plus_arm_length_2=arm_length_1_plus_arm_length_2,
             arm_length_1_minus_arm_length_2=arm_length_1_minus_arm_length_2,
@@ -414,7 +409,6 @@ class Scara3Z(TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_z = k.offset_z
-        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -435,13 +429,15 @@ class Scara3Z(TwistChoice):
         sin_heading = heading_across/heading_length
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
+        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
                 0.5*(
                     abs(arm_length_1_minus_arm_length_2 - reach) + abs(arm_length_1_minus_arm_length_2 + reach)
@@ -450,9 +446,7 @@ class Scara3Z(TwistChoice):
                 - arm_length_1_plus_arm_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > machine_scale_times_free_angle:

@@ -20,9 +20,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 21 additions, 10 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 87 additions, 72 multiplications, 20 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 141 additions, 99 multiplications, 31 divisions, 8 square roots, 10 sines
+    forward: 18 additions, 10 multiplications, 3 divisions, 0 square roots, 7 sines
+    inverse: 84 additions, 72 multiplications, 20 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 135 additions, 99 multiplications, 31 divisions, 8 square roots, 10 sines
 
 The coupling may be given as travel per turn (pitch) or per degree (gear coupling), never both.
 
@@ -103,16 +103,13 @@ class Constants(NamedTuple):
     single_a4: bool
     mid_a4: float
     machine_scale: float
-    scale_a2: float
     part_of_constant: float
     part_of_z: float
-    scale_a2_squared_times_rounding: float
     machine_scale_times_free_angle: float
     link_length_1_plus_link_length_2: float
     link_length_1_minus_link_length_2: float
     part_of_constant_2: float
     link_length_1_times_shortest_link: float
-    twice_link_length_1: float
 
 
 class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
@@ -373,16 +370,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         machine_scale = link_length_1 + link_length_2  # a length of the machine
-        scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
         part_of_constant = -1.0 if flange_down else 1.0
         part_of_z = (gear_coupling - pitch_zc/360.0)/DEGREE
-        scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
         machine_scale_times_free_angle = 1e-11*machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         part_of_constant_2 = pitch_zc/(360.0*DEGREE) - gear_coupling/DEGREE
         link_length_1_times_shortest_link = 1e-9*link_length_1
-        twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, pitch_zc=pitch_zc, gear_coupling=gear_coupling,
             flange_down=flange_down, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
@@ -392,15 +386,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3,
             upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
             lower_a4=effective_lower_a4, upper_a4=effective_upper_a4, unlimited_a4=unlimited_a4, lowest_a4=lowest_a4,
-            highest_a4=highest_a4, single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale, scale_a2=scale_a2,
+            highest_a4=highest_a4, single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale,
             part_of_constant=part_of_constant, part_of_z=part_of_z,
-            scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
             part_of_constant_2=part_of_constant_2,
             link_length_1_times_shortest_link=link_length_1_times_shortest_link,
-            twice_link_length_1=twice_link_length_1,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -495,7 +487,6 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         part_of_z = k.part_of_z
-        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a4 = k.single_a4
@@ -517,13 +508,15 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         reach = sqrt(x*x + y*y)
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
+        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
                 0.5*(
                     abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
@@ -532,9 +525,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
                 - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > machine_scale_times_free_angle:
@@ -759,7 +750,6 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         part_of_z = k.part_of_z
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        twice_link_length_1 = k.twice_link_length_1
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -770,44 +760,42 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         free_a4 = (ref_a4 - offset_a4)*DEGREE
         cos_a4 = cos(free_a4)
         sin_a4 = sin(free_a4)
-        point_y_times_sin_a4 = -point_y*sin_a4
+        point_y_times_sin_a4 = point_y*sin_a4
         # the point seen from the last moving joint
         tool_x = (
-            link_length_2 + point_y_times_sin_a4 + (-2.0*point_y_times_sin_a4 if flange_down else 0.0)
-            + point_x*cos_a4
+            link_length_2 + (2.0*point_y_times_sin_a4 if flange_down else 0.0) + point_x*cos_a4 - point_y_times_sin_a4
         )
-        point_x_times_sin_a4 = -point_x*sin_a4
+        point_x_times_sin_a4 = point_x*sin_a4
         cos_a4_times_point_y = point_y*cos_a4
         # the point seen from the last moving joint
         tool_y = (
-            -cos_a4_times_point_y - point_x_times_sin_a4
+            point_x_times_sin_a4 - cos_a4_times_point_y
             if flange_down
-            else cos_a4_times_point_y - point_x_times_sin_a4
+            else cos_a4_times_point_y + point_x_times_sin_a4
         )
         effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = effective_a2*twice_link_length_1  # a2: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach)*(effective_a2 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2)*(effective_a2 - link_length_1_minus_reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a2 - link_length_1_minus_reach) + 0.5*abs(effective_a2 + link_length_1_minus_reach)
                 + 0.5*abs(effective_a2 - link_length_1_plus_reach) + 0.5*abs(effective_a2 + link_length_1_plus_reach)
                 - effective_a2 - link_length_1 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         cos_a2 = (tool_x*cos_swing_a2 + tool_y*sin_swing_a2)/effective_a2
         sin_a2 = (tool_x*sin_swing_a2 - tool_y*cos_swing_a2)/effective_a2

@@ -19,9 +19,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 22 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 85 additions, 72 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 137 additions, 99 multiplications, 35 divisions, 8 square roots, 10 sines
+    forward: 19 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
+    inverse: 82 additions, 72 multiplications, 22 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 131 additions, 99 multiplications, 35 divisions, 8 square roots, 10 sines
 
 The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
 
@@ -101,13 +101,10 @@ class Constants(NamedTuple):
     single_a4: bool
     mid_a4: float
     machine_scale: float
-    scale_a3: float
-    scale_a3_squared_times_rounding: float
     machine_scale_times_free_angle: float
     link_length_1_plus_link_length_2: float
     link_length_1_minus_link_length_2: float
     link_length_1_times_shortest_link: float
-    twice_link_length_1: float
 
 
 class Scara4ZCCC(OffsetKinematics, TwistChoice):
@@ -323,13 +320,10 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         machine_scale = link_length_1 + link_length_2 + link_length_3  # a length of the machine
-        scale_a3 = 2.0*link_length_1*link_length_2  # a3: law of cosines in the x² + y² equation
-        scale_a3_squared_times_rounding = 1e-12*scale_a3*scale_a3
         machine_scale_times_free_angle = 1e-11*machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_1_times_shortest_link = 1e-9*link_length_1
-        twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, link_length_3=link_length_3,
             offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3, offset_a4=offset_a4,
@@ -339,13 +333,11 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3, upper_a3=effective_upper_a3,
             unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3, single_a3=single_a3, mid_a3=mid_a3,
             lower_a4=effective_lower_a4, upper_a4=effective_upper_a4, unlimited_a4=unlimited_a4, lowest_a4=lowest_a4,
-            highest_a4=highest_a4, single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale, scale_a3=scale_a3,
-            scale_a3_squared_times_rounding=scale_a3_squared_times_rounding,
+            highest_a4=highest_a4, single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
             link_length_1_times_shortest_link=link_length_1_times_shortest_link,
-            twice_link_length_1=twice_link_length_1,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -424,7 +416,6 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        scale_a3_squared_times_rounding = k.scale_a3_squared_times_rounding
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         single_a4 = k.single_a4
@@ -445,13 +436,15 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         sin_heading = heading_across/heading_length
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # 1 - cosine, times the scale
+        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -scale_a3_squared_times_rounding):
+        if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
             missing = (
                 0.5*(
                     abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
@@ -461,9 +454,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         axis_a1 = offset_a1 + z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
         # a2: linear pair in the x and y equations; its reference where it is free
         if reach > machine_scale_times_free_angle:
@@ -680,7 +671,6 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a4 = k.offset_a4
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        twice_link_length_1 = k.twice_link_length_1
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -699,17 +689,18 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         # a3: its effective length is too short
         if not (effective_a3 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        swing_scale_a3 = effective_a3*twice_link_length_1  # a3: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # 1 - cosine, times the scale
+        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a3 = (effective_a3 + link_length_1_minus_reach)*(effective_a3 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (link_length_1_plus_reach - effective_a3)*(effective_a3 - link_length_1_minus_reach)
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a3 - link_length_1_minus_reach) + 0.5*abs(effective_a3 + link_length_1_minus_reach)
                 + 0.5*abs(effective_a3 - link_length_1_plus_reach) + 0.5*abs(effective_a3 + link_length_1_plus_reach)
@@ -718,9 +709,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         a1 = z - point_z  # a1: affine in the z equation
         axis_a1 = a1 + offset_a1
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
         cos_a3 = (tool_x*cos_swing_a3 + tool_y*sin_swing_a3)/effective_a3
         sin_a3 = (tool_x*sin_swing_a3 - tool_y*cos_swing_a3)/effective_a3

@@ -19,9 +19,9 @@ Singularities:
     elbow: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 24 additions, 12 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 103 additions, 88 multiplications, 26 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 167 additions, 125 multiplications, 41 divisions, 8 square roots, 10 sines
+    forward: 21 additions, 12 multiplications, 3 divisions, 0 square roots, 7 sines
+    inverse: 100 additions, 88 multiplications, 26 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 161 additions, 125 multiplications, 41 divisions, 8 square roots, 10 sines
 
 A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.
 
@@ -110,9 +110,7 @@ class Constants(NamedTuple):
     lowest_joint_3: float
     highest_joint_3: float
     machine_scale: float
-    scale_a2: float
     machine_scale_times_plane: float
-    scale_a2_squared_times_rounding: float
     machine_scale_times_free_angle: float
     link_length_1_plus_link_length_2: float
     link_length_1_minus_link_length_2: float
@@ -123,7 +121,6 @@ class Constants(NamedTuple):
     part_of_constant_2: float
     part_of_constant_3: float
     link_length_1_times_shortest_link: float
-    twice_link_length_1: float
 
 
 class SCCC(OffsetKinematics, TwistChoice):
@@ -393,9 +390,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         lowest_joint_3 = -1e12 if unlimited_joint_3 else effective_lower_joint_3 - tolerance_joint_3
         highest_joint_3 = 1e12 if unlimited_joint_3 else effective_upper_joint_3 + tolerance_joint_3
         machine_scale = link_length_1 + link_length_2 + link_length_3  # a length of the machine
-        scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
         machine_scale_times_plane = 1e-6*machine_scale
-        scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
         machine_scale_times_free_angle = 1e-11*machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
@@ -406,7 +401,6 @@ class SCCC(OffsetKinematics, TwistChoice):
         part_of_constant_2 = link_length_2 + coupling_12*link_length_2
         part_of_constant_3 = link_length_3 + coupling_23*link_length_3
         link_length_1_times_shortest_link = 1e-9*link_length_1
-        twice_link_length_1 = 2.0*link_length_1
         return Constants(
             link_length_1=link_length_1, link_length_2=link_length_2, link_length_3=link_length_3,
             coupling_12=coupling_12, coupling_13=coupling_13, coupling_23=coupling_23, offset_a1=offset_a1,
@@ -419,9 +413,8 @@ class SCCC(OffsetKinematics, TwistChoice):
             upper_joint_2=effective_upper_joint_2, unlimited_joint_2=unlimited_joint_2, lowest_joint_2=lowest_joint_2,
             highest_joint_2=highest_joint_2, lower_joint_3=effective_lower_joint_3,
             upper_joint_3=effective_upper_joint_3, unlimited_joint_3=unlimited_joint_3, lowest_joint_3=lowest_joint_3,
-            highest_joint_3=highest_joint_3, machine_scale=machine_scale, scale_a2=scale_a2,
+            highest_joint_3=highest_joint_3, machine_scale=machine_scale,
             machine_scale_times_plane=machine_scale_times_plane,
-            scale_a2_squared_times_rounding=scale_a2_squared_times_rounding,
             machine_scale_times_free_angle=machine_scale_times_free_angle,
             link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
             link_length_1_minus_link_length_2=link_length_1_minus_link_length_2, part_of_open_a2=part_of_open_a2,
@@ -429,7 +422,6 @@ class SCCC(OffsetKinematics, TwistChoice):
             coupling_23_plus_one=coupling_23_plus_one, part_of_constant=part_of_constant,
             part_of_constant_2=part_of_constant_2, part_of_constant_3=part_of_constant_3,
             link_length_1_times_shortest_link=link_length_1_times_shortest_link,
-            twice_link_length_1=twice_link_length_1,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -516,7 +508,6 @@ class SCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         part_of_open_a2 = k.part_of_open_a2
-        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -541,13 +532,15 @@ class SCCC(OffsetKinematics, TwistChoice):
         sin_heading = heading_across/heading_length
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
+        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
                 0.5*(
                     abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
@@ -556,9 +549,7 @@ class SCCC(OffsetKinematics, TwistChoice):
                 - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > machine_scale_times_free_angle:
@@ -592,7 +583,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        part_of_axis_a3 = -coupling_13*motor_a1 - coupling_23*motor_a2
+        part_of_axis_a3 = coupling_13*motor_a1 + coupling_23*motor_a2
         if turn_a3 != 0:
             near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3)
         else:
@@ -604,10 +595,10 @@ class SCCC(OffsetKinematics, TwistChoice):
             else:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE
+                open_a3 = offset_a3 + (free_a3 - part_of_axis_a3)/DEGREE
             near_a3 = open_a3
         # a3: what the sum a123 leaves; A3: its turn
-        axis_a3 = offset_a3 + (angle_heading + part_of_axis_a3 - angle_a1 - angle_a2)/DEGREE
+        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2 - part_of_axis_a3)/DEGREE
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -875,7 +866,6 @@ class SCCC(OffsetKinematics, TwistChoice):
         part_of_open_a2 = k.part_of_open_a2
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        twice_link_length_1 = k.twice_link_length_1
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -901,26 +891,25 @@ class SCCC(OffsetKinematics, TwistChoice):
         # a2: its effective length is too short
         if not (effective_a2 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = effective_a2*twice_link_length_1  # a2: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach)*(effective_a2 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2)*(effective_a2 - link_length_1_minus_reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
                 0.5*abs(effective_a2 - link_length_1_minus_reach) + 0.5*abs(effective_a2 + link_length_1_minus_reach)
                 + 0.5*abs(effective_a2 - link_length_1_plus_reach) + 0.5*abs(effective_a2 + link_length_1_plus_reach)
                 - effective_a2 - link_length_1 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         cos_a2 = (tool_x*cos_swing_a2 + tool_y*sin_swing_a2)/effective_a2
         sin_a2 = (tool_x*sin_swing_a2 - tool_y*cos_swing_a2)/effective_a2

@@ -21,9 +21,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 49 additions, 64 multiplications, 2 divisions, 1 square roots, 0 sines
-    inverse: 69 additions, 53 multiplications, 6 divisions, 5 square roots, 2 sines
-    inverse, all 8 branches open: 545 additions, 424 multiplications, 48 divisions, 40 square roots, 16 sines
+    forward: 49 additions, 62 multiplications, 2 divisions, 1 square roots, 0 sines
+    inverse: 61 additions, 53 multiplications, 6 divisions, 5 square roots, 2 sines
+    inverse, all 8 branches open: 481 additions, 424 multiplications, 48 divisions, 40 square roots, 16 sines
 
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -105,16 +105,20 @@ class Constants(NamedTuple):
     sin_rail_angle_times_root_of_3: float
     twice_cos_rail_angle: float
     half_by_arm_length: float
+    one_by_arm_length: float
+    sin_rail_angle_times_half_by_arm_length: float
+    cos_rail_angle_by_arm_length: float
+    part_of_branch_carriage_2: float
     part_of_root_square_a1: float
-    sin_rail_angle_squared: float
     cos_rail_angle_squared: float
     part_of_root_square_a2: float
     part_of_root_square_a2_2: float
     cos_rail_angle_times_sin_rail_angle: float
-    sin_rail_angle_squared_times_3_by_4: float
     sin_rail_angle_squared_times_1_by_4: float
     part_of_type2_rods_coplanar: float
     root_of_3_times_half_by_arm_length: float
+    one_minus_sin_rail_angle_squared: float
+    part_of_root_square_a2_3: float
     part_of_margin_rods_coplanar: float
     part_of_determinant_divisor: float
     twice_sin_rail_angle: float
@@ -367,16 +371,20 @@ class TripodLinear(OffsetKinematics):
         sin_rail_angle_times_root_of_3 = root_of_3*sin_rail_angle
         twice_cos_rail_angle = 2.0*cos_rail_angle
         half_by_arm_length = 0.5/arm_length
+        one_by_arm_length = 1.0/arm_length
+        sin_rail_angle_times_half_by_arm_length = 0.5*sin_rail_angle/arm_length
+        cos_rail_angle_by_arm_length = cos_rail_angle/arm_length
+        part_of_branch_carriage_2 = 0.5*root_of_3*sin_rail_angle/arm_length
         part_of_root_square_a1 = 2.0*cos_rail_angle*sin_rail_angle
-        sin_rail_angle_squared = sin_rail_angle*sin_rail_angle
         cos_rail_angle_squared = cos_rail_angle*cos_rail_angle
         part_of_root_square_a2 = root_of_3*cos_rail_angle*sin_rail_angle
         part_of_root_square_a2_2 = 0.5*root_of_3*sin_rail_angle*sin_rail_angle
         cos_rail_angle_times_sin_rail_angle = cos_rail_angle*sin_rail_angle
-        sin_rail_angle_squared_times_3_by_4 = 0.75*sin_rail_angle*sin_rail_angle
         sin_rail_angle_squared_times_1_by_4 = 0.25*sin_rail_angle*sin_rail_angle
         part_of_type2_rods_coplanar = assembly_sign/(arm_length*arm_length*arm_length)
         root_of_3_times_half_by_arm_length = 0.5*root_of_3/arm_length
+        one_minus_sin_rail_angle_squared = 1.0 - sin_rail_angle*sin_rail_angle
+        part_of_root_square_a2_3 = 1.0 - 0.75*sin_rail_angle*sin_rail_angle
         part_of_margin_rods_coplanar = arm_length*arm_length*arm_length
         part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
         twice_sin_rail_angle = 2.0*sin_rail_angle
@@ -396,14 +404,18 @@ class TripodLinear(OffsetKinematics):
             part_of_pivot_2_y_2=part_of_pivot_2_y_2, inner_radius_minus_outer_radius=inner_radius_minus_outer_radius,
             half_sin_rail_angle=half_sin_rail_angle, part_of_pivot_2_x=part_of_pivot_2_x,
             sin_rail_angle_times_root_of_3=sin_rail_angle_times_root_of_3, twice_cos_rail_angle=twice_cos_rail_angle,
-            half_by_arm_length=half_by_arm_length, part_of_root_square_a1=part_of_root_square_a1,
-            sin_rail_angle_squared=sin_rail_angle_squared, cos_rail_angle_squared=cos_rail_angle_squared,
-            part_of_root_square_a2=part_of_root_square_a2, part_of_root_square_a2_2=part_of_root_square_a2_2,
+            half_by_arm_length=half_by_arm_length, one_by_arm_length=one_by_arm_length,
+            sin_rail_angle_times_half_by_arm_length=sin_rail_angle_times_half_by_arm_length,
+            cos_rail_angle_by_arm_length=cos_rail_angle_by_arm_length,
+            part_of_branch_carriage_2=part_of_branch_carriage_2, part_of_root_square_a1=part_of_root_square_a1,
+            cos_rail_angle_squared=cos_rail_angle_squared, part_of_root_square_a2=part_of_root_square_a2,
+            part_of_root_square_a2_2=part_of_root_square_a2_2,
             cos_rail_angle_times_sin_rail_angle=cos_rail_angle_times_sin_rail_angle,
-            sin_rail_angle_squared_times_3_by_4=sin_rail_angle_squared_times_3_by_4,
             sin_rail_angle_squared_times_1_by_4=sin_rail_angle_squared_times_1_by_4,
             part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
             root_of_3_times_half_by_arm_length=root_of_3_times_half_by_arm_length,
+            one_minus_sin_rail_angle_squared=one_minus_sin_rail_angle_squared,
+            part_of_root_square_a2_3=part_of_root_square_a2_3,
             part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
             part_of_determinant_divisor=part_of_determinant_divisor, twice_sin_rail_angle=twice_sin_rail_angle,
             part_of_slope_1_by_x=part_of_slope_1_by_x,
@@ -418,19 +430,20 @@ class TripodLinear(OffsetKinematics):
         arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         cos_rail_angle = k.cos_rail_angle
-        half_by_arm_length = k.half_by_arm_length
+        cos_rail_angle_by_arm_length = k.cos_rail_angle_by_arm_length
         half_sin_rail_angle = k.half_sin_rail_angle
         inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        one_by_arm_length = k.one_by_arm_length
+        part_of_branch_carriage_2 = k.part_of_branch_carriage_2
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
-        sin_rail_angle_times_root_of_3 = k.sin_rail_angle_times_root_of_3
-        twice_cos_rail_angle = k.twice_cos_rail_angle
+        sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
@@ -486,14 +499,12 @@ class TripodLinear(OffsetKinematics):
         branch_carriage_1 = (a1 + z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
         span_2_x = x - part_of_pivot_2_x  # rod 2
-        part_of_branch_carriage_2 = span_2_x*sin_rail_angle - twice_cos_rail_angle*z
-        branch_carriage_2 = (
-            (2.0*a2 + span_2_y*sin_rail_angle_times_root_of_3 - part_of_branch_carriage_2)*half_by_arm_length
+        part_of_branch_carriage_2_2 = (
+            span_2_x*sin_rail_angle_times_half_by_arm_length - z*cos_rail_angle_by_arm_length
         )
+        branch_carriage_2 = a2*one_by_arm_length + part_of_branch_carriage_2*span_2_y - part_of_branch_carriage_2_2
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
-        branch_carriage_3 = (
-            (2.0*a3 - part_of_branch_carriage_2 - span_3_y*sin_rail_angle_times_root_of_3)*half_by_arm_length
-        )
+        branch_carriage_3 = a3*one_by_arm_length - part_of_branch_carriage_2_2 - part_of_branch_carriage_2*span_3_y
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -586,19 +597,19 @@ class TripodLinear(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        one_minus_sin_rail_angle_squared = k.one_minus_sin_rail_angle_squared
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         part_of_root_square_a1 = k.part_of_root_square_a1
         part_of_root_square_a2 = k.part_of_root_square_a2
         part_of_root_square_a2_2 = k.part_of_root_square_a2_2
+        part_of_root_square_a2_3 = k.part_of_root_square_a2_3
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
         sin_rail_angle = k.sin_rail_angle
-        sin_rail_angle_squared = k.sin_rail_angle_squared
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
-        sin_rail_angle_squared_times_3_by_4 = k.sin_rail_angle_squared_times_3_by_4
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -606,8 +617,8 @@ class TripodLinear(OffsetKinematics):
         z_minus_cos_rail_angle_squared_times_z = z - z*cos_rail_angle_squared
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z
-            - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x - y*y
+            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z - y*y
+            - one_minus_sin_rail_angle_squared*span_1_x*span_1_x
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
@@ -615,80 +626,75 @@ class TripodLinear(OffsetKinematics):
                 arm_length
                 - root(
                     y*y + (z_minus_cos_rail_angle_squared_times_z - part_of_root_square_a1*span_1_x)*z
-                    - span_1_x*(span_1_x*sin_rail_angle_squared - span_1_x)
+                    + one_minus_sin_rail_angle_squared*span_1_x*span_1_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
-        part_of_root_square_a2_3 = (
-            -z_minus_cos_rail_angle_squared_times_z - span_2_x*cos_rail_angle_times_sin_rail_angle
+        part_of_root_square_a2_4 = (
+            z_minus_cos_rail_angle_squared_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle
         )
-        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
+        part_of_root_square_a2_5 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + (part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)*z
-            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
-            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
+            arm_length_squared + (-part_of_root_square_a2_5 - part_of_root_square_a2_2*span_2_y)*span_2_x
+            + (part_of_root_square_a2*span_2_y - part_of_root_square_a2_4)*z
+            - part_of_root_square_a2_3*span_2_y*span_2_y
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (-part_of_root_square_a2_3 - part_of_root_square_a2*span_2_y)*z
-                    - (part_of_root_square_a2_4 - part_of_root_square_a2_2*span_2_y)*span_2_x
-                    - span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4 - span_2_y)
+                    (part_of_root_square_a2_5 + part_of_root_square_a2_2*span_2_y)*span_2_x
+                    + (part_of_root_square_a2_4 - part_of_root_square_a2*span_2_y)*z
+                    + part_of_root_square_a2_3*span_2_y*span_2_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
-            + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
-            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
+            arm_length_squared + (part_of_root_square_a2_2*span_3_y - part_of_root_square_a2_5)*span_2_x
+            + (-part_of_root_square_a2_4 - part_of_root_square_a2*span_3_y)*z
+            - part_of_root_square_a2_3*span_3_y*span_3_y
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (span_3_y - span_3_y*sin_rail_angle_squared_times_3_by_4)*span_3_y
-                    + (part_of_root_square_a2*span_3_y - part_of_root_square_a2_3)*z
-                    - (part_of_root_square_a2_4 + part_of_root_square_a2_2*span_3_y)*span_2_x
+                    (part_of_root_square_a2_5 - part_of_root_square_a2_2*span_3_y)*span_2_x
+                    + (part_of_root_square_a2_4 + part_of_root_square_a2*span_3_y)*z
+                    + part_of_root_square_a2_3*span_3_y*span_3_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         cos_rail_angle_times_z = z*cos_rail_angle
         middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
         a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
-        rod_1_x = x - pivot_1_x
+        rod_1_x = span_1_x + a1*sin_rail_angle
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
         part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle*span_2_x
         middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
-        rod_2_x = x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
-        rod_2_y = y - pivot_2_y
+        rod_2_x = span_2_x - a2*half_sin_rail_angle
+        rod_2_y = span_2_y + a2*part_of_pivot_2_y
         pivot_2_z = -a2*cos_rail_angle  # rod 2
         rod_2_z = z - pivot_2_z
         middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
         a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
-        rod_3_x = x - pivot_3_x
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
-        rod_3_y = y - pivot_3_y
+        rod_3_x = span_2_x - a3*half_sin_rail_angle
+        rod_3_y = span_3_y - a3*part_of_pivot_2_y
         pivot_3_z = -a3*cos_rail_angle  # rod 3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            -part_of_type2_rods_coplanar
+            part_of_type2_rods_coplanar
             *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-                + (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
+                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
+                + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*y
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
@@ -791,20 +797,21 @@ class TripodLinear(OffsetKinematics):
         arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         cos_rail_angle = k.cos_rail_angle
-        half_by_arm_length = k.half_by_arm_length
+        cos_rail_angle_by_arm_length = k.cos_rail_angle_by_arm_length
         half_sin_rail_angle = k.half_sin_rail_angle
         inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        one_by_arm_length = k.one_by_arm_length
+        part_of_branch_carriage_2 = k.part_of_branch_carriage_2
         part_of_margin_rods_coplanar = k.part_of_margin_rods_coplanar
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
-        sin_rail_angle_times_root_of_3 = k.sin_rail_angle_times_root_of_3
-        twice_cos_rail_angle = k.twice_cos_rail_angle
+        sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
@@ -860,14 +867,10 @@ class TripodLinear(OffsetKinematics):
         y = foot_y + normal_y*rise
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
         span_2_x = x - part_of_pivot_2_x  # rod 2
-        part_of_margin_square_2 = span_2_x*sin_rail_angle - twice_cos_rail_angle*z
-        margin_square_2 = (
-            (2.0*a2 + span_2_y*sin_rail_angle_times_root_of_3 - part_of_margin_square_2)*half_by_arm_length
-        )
+        part_of_margin_square_2 = span_2_x*sin_rail_angle_times_half_by_arm_length - z*cos_rail_angle_by_arm_length
+        margin_square_2 = a2*one_by_arm_length + part_of_branch_carriage_2*span_2_y - part_of_margin_square_2
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
-        margin_square_3 = (
-            (2.0*a3 - part_of_margin_square_2 - span_3_y*sin_rail_angle_times_root_of_3)*half_by_arm_length
-        )
+        margin_square_3 = a3*one_by_arm_length - part_of_margin_square_2 - part_of_branch_carriage_2*span_3_y
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
         rod_2_x = x - pivot_2_x
@@ -879,7 +882,7 @@ class TripodLinear(OffsetKinematics):
         margin_rods_coplanar = (
             (
                 rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
-                - (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
+                + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*y
             )
             /part_of_margin_rods_coplanar
         )
@@ -959,32 +962,31 @@ class TripodLinear(OffsetKinematics):
             return Status.IMPOSSIBLE
         rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
-        twice_x = -2.0*x
-        slope_1_by_x = a1*twice_sin_rail_angle - part_of_slope_1_by_x - twice_x
+        twice_x = 2.0*x
+        slope_1_by_x = twice_x + a1*twice_sin_rail_angle - part_of_slope_1_by_x
         y = foot_y + normal_y*rise
         slope_1_by_y = 2.0*y
         z = foot_z + pivot_1_z + normal_z*rise
-        twice_z = -2.0*z
-        slope_1_by_z = a1*twice_cos_rail_angle - twice_z
+        twice_z = 2.0*z
+        slope_1_by_z = twice_z + a1*twice_cos_rail_angle
         a2_times_sin_rail_angle = a2*sin_rail_angle
         root_of_3_2 = root(3.0)
         part_of_slope_2_by_y = (inner_radius - a2_times_sin_rail_angle - outer_radius)*root_of_3_2
         slope_2_by_y = slope_1_by_y - part_of_slope_2_by_y
-        slope_2_by_z = a2*twice_cos_rail_angle - twice_z
+        slope_2_by_z = twice_z + a2*twice_cos_rail_angle
         a3_times_sin_rail_angle = a3*sin_rail_angle
         part_of_slope_3_by_y = (inner_radius - a3_times_sin_rail_angle - outer_radius)*root_of_3_2
         slope_3_by_y = part_of_slope_3_by_y + slope_1_by_y
-        slope_3_by_z = a3*twice_cos_rail_angle - twice_z
-        part_of_determinant = slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z
-        part_of_slope_2_by_x = inner_radius_minus_outer_radius - twice_x
+        slope_3_by_z = twice_z + a3*twice_cos_rail_angle
+        part_of_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y
+        part_of_slope_2_by_x = inner_radius_minus_outer_radius + twice_x
         slope_2_by_x = part_of_slope_2_by_x - a2_times_sin_rail_angle
         slope_3_by_x = part_of_slope_2_by_x - a3_times_sin_rail_angle
-        part_of_determinant_2 = slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x
-        part_of_determinant_3 = slope_2_by_y*slope_3_by_x - slope_2_by_x*slope_3_by_y
+        part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
+        part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
-            -part_of_determinant*slope_1_by_x - part_of_determinant_2*slope_1_by_y
-            - part_of_determinant_3*slope_1_by_z
+            part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
         )
         # nothing controls the plate
         if not (abs(determinant) > part_of_determinant_divisor):
@@ -993,27 +995,29 @@ class TripodLinear(OffsetKinematics):
         one_by_determinant_divisor = 1.0/determinant
         part = one_by_determinant_divisor*slope_1_by_a1
         slope_2_by_a2 = (
-            (pivot_2_x - x)*sin_rail_angle + (z - pivot_2_z)*twice_cos_rail_angle
-            - (0.5*part_of_slope_2_by_y - y)*sin_rail_angle_times_root_of_3
+            (pivot_2_x - x)*sin_rail_angle + (y - 0.5*part_of_slope_2_by_y)*sin_rail_angle_times_root_of_3
+            + (z - pivot_2_z)*twice_cos_rail_angle
         )
-        part_2 = -one_by_determinant_divisor*slope_2_by_a2
+        part_2 = one_by_determinant_divisor*slope_2_by_a2
         slope_3_by_a3 = (
-            (pivot_3_x - x)*sin_rail_angle + (-0.5*part_of_slope_3_by_y - y)*sin_rail_angle_times_root_of_3
-            + (z - pivot_3_z)*twice_cos_rail_angle
+            (pivot_3_x - x)*sin_rail_angle + (z - pivot_3_z)*twice_cos_rail_angle
+            - (0.5*part_of_slope_3_by_y + y)*sin_rail_angle_times_root_of_3
         )
         part_3 = one_by_determinant_divisor*slope_3_by_a3
         return (
             (
-                part*part_of_determinant, (slope_1_by_z*slope_3_by_y - slope_1_by_y*slope_3_by_z)*part_2,
+                -part*part_of_determinant,
+                part_2*(slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y),
                 (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
             ),
             (
-                part*part_of_determinant_2,
-                part_2*(slope_1_by_x*slope_3_by_z - slope_1_by_z*slope_3_by_x),
+                -part*part_of_determinant_2,
+                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*part_2,
                 part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
             ),
             (
-                part*part_of_determinant_3, (slope_1_by_y*slope_3_by_x - slope_1_by_x*slope_3_by_y)*part_2,
+                -part*part_of_determinant_3,
+                part_2*(slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x),
                 (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
             ),
         )
@@ -1043,19 +1047,19 @@ class TripodLinear(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        one_minus_sin_rail_angle_squared = k.one_minus_sin_rail_angle_squared
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         part_of_root_square_a1 = k.part_of_root_square_a1
         part_of_root_square_a2 = k.part_of_root_square_a2
         part_of_root_square_a2_2 = k.part_of_root_square_a2_2
+        part_of_root_square_a2_3 = k.part_of_root_square_a2_3
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
         sin_rail_angle = k.sin_rail_angle
-        sin_rail_angle_squared = k.sin_rail_angle_squared
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
-        sin_rail_angle_squared_times_3_by_4 = k.sin_rail_angle_squared_times_3_by_4
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -1070,7 +1074,7 @@ class TripodLinear(OffsetKinematics):
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
             arm_length_squared + flange_z*(part_of_root_square_a1*span_1_x - part_of_root_square_a1_2)
-            - flange_y*flange_y - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x
+            - flange_y*flange_y - one_minus_sin_rail_angle_squared*span_1_x*span_1_x
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
@@ -1078,77 +1082,72 @@ class TripodLinear(OffsetKinematics):
                 arm_length
                 - root(
                     flange_y*flange_y + (part_of_root_square_a1_2 - part_of_root_square_a1*span_1_x)*flange_z
-                    - span_1_x*(span_1_x*sin_rail_angle_squared - span_1_x)
+                    + one_minus_sin_rail_angle_squared*span_1_x*span_1_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_x = flange_x - part_of_pivot_2_x  # rod 2
         span_2_y = flange_y - part_of_pivot_2_y_2  # rod 2
-        part_of_root_square_a2_3 = -part_of_root_square_a1_2 - span_2_x*cos_rail_angle_times_sin_rail_angle
-        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
+        part_of_root_square_a2_4 = part_of_root_square_a1_2 + span_2_x*cos_rail_angle_times_sin_rail_angle
+        part_of_root_square_a2_5 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + flange_z*(part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)
-            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
-            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
+            arm_length_squared + flange_z*(part_of_root_square_a2*span_2_y - part_of_root_square_a2_4)
+            + (-part_of_root_square_a2_5 - part_of_root_square_a2_2*span_2_y)*span_2_x
+            - part_of_root_square_a2_3*span_2_y*span_2_y
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (-part_of_root_square_a2_3 - part_of_root_square_a2*span_2_y)*flange_z
-                    - (part_of_root_square_a2_4 - part_of_root_square_a2_2*span_2_y)*span_2_x
-                    - span_2_y*(span_2_y*sin_rail_angle_squared_times_3_by_4 - span_2_y)
+                    (part_of_root_square_a2_4 - part_of_root_square_a2*span_2_y)*flange_z
+                    + (part_of_root_square_a2_5 + part_of_root_square_a2_2*span_2_y)*span_2_x
+                    + part_of_root_square_a2_3*span_2_y*span_2_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_3_y = flange_y + part_of_pivot_2_y_2  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*flange_z
-            + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
-            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
+            arm_length_squared + (-part_of_root_square_a2_4 - part_of_root_square_a2*span_3_y)*flange_z
+            + (part_of_root_square_a2_2*span_3_y - part_of_root_square_a2_5)*span_2_x
+            - part_of_root_square_a2_3*span_3_y*span_3_y
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    flange_z*(part_of_root_square_a2*span_3_y - part_of_root_square_a2_3)
-                    + (span_3_y - span_3_y*sin_rail_angle_squared_times_3_by_4)*span_3_y
-                    - (part_of_root_square_a2_4 + part_of_root_square_a2_2*span_3_y)*span_2_x
+                    flange_z*(part_of_root_square_a2_4 + part_of_root_square_a2*span_3_y)
+                    + (part_of_root_square_a2_5 - part_of_root_square_a2_2*span_3_y)*span_2_x
+                    + part_of_root_square_a2_3*span_3_y*span_3_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         cos_rail_angle_times_flange_z = flange_z*cos_rail_angle
         middle_a1 = cos_rail_angle_times_flange_z + span_1_x*sin_rail_angle
         a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
-        rod_1_x = flange_x - pivot_1_x
+        rod_1_x = span_1_x + a1*sin_rail_angle
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         rod_1_z = flange_z - pivot_1_z
         part_of_middle_a2 = cos_rail_angle_times_flange_z - half_sin_rail_angle*span_2_x
         middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
-        rod_2_x = flange_x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
-        rod_2_y = flange_y - pivot_2_y
+        rod_2_x = span_2_x - a2*half_sin_rail_angle
+        rod_2_y = span_2_y + a2*part_of_pivot_2_y
         pivot_2_z = -a2*cos_rail_angle  # rod 2
         rod_2_z = flange_z - pivot_2_z
         middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
         a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
-        rod_3_x = flange_x - pivot_3_x
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
-        rod_3_y = flange_y - pivot_3_y
+        rod_3_x = span_2_x - a3*half_sin_rail_angle
+        rod_3_y = span_3_y - a3*part_of_pivot_2_y
         pivot_3_z = -a3*cos_rail_angle  # rod 3
         rod_3_z = flange_z - pivot_3_z
         type2_rods_coplanar = (
-            -(
-                flange_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x) + (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x
-                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
+            (
+                (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*flange_y + rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y)
+                + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
             )
             *part_of_type2_rods_coplanar
         )
@@ -1231,19 +1230,20 @@ class TripodLinear(OffsetKinematics):
         arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         cos_rail_angle = k.cos_rail_angle
-        half_by_arm_length = k.half_by_arm_length
+        cos_rail_angle_by_arm_length = k.cos_rail_angle_by_arm_length
         half_sin_rail_angle = k.half_sin_rail_angle
         inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        one_by_arm_length = k.one_by_arm_length
+        part_of_branch_carriage_2 = k.part_of_branch_carriage_2
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
-        sin_rail_angle_times_root_of_3 = k.sin_rail_angle_times_root_of_3
-        twice_cos_rail_angle = k.twice_cos_rail_angle
+        sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
@@ -1299,14 +1299,12 @@ class TripodLinear(OffsetKinematics):
         flange_y = foot_y + normal_y*rise
         span_2_y = flange_y - part_of_pivot_2_y_2  # rod 2
         span_2_x = flange_x - part_of_pivot_2_x  # rod 2
-        part_of_branch_carriage_2 = span_2_x*sin_rail_angle - flange_z*twice_cos_rail_angle
-        branch_carriage_2 = (
-            (2.0*a2 + span_2_y*sin_rail_angle_times_root_of_3 - part_of_branch_carriage_2)*half_by_arm_length
+        part_of_branch_carriage_2_2 = (
+            span_2_x*sin_rail_angle_times_half_by_arm_length - flange_z*cos_rail_angle_by_arm_length
         )
+        branch_carriage_2 = a2*one_by_arm_length + part_of_branch_carriage_2*span_2_y - part_of_branch_carriage_2_2
         span_3_y = flange_y + part_of_pivot_2_y_2  # rod 3
-        branch_carriage_3 = (
-            (2.0*a3 - part_of_branch_carriage_2 - span_3_y*sin_rail_angle_times_root_of_3)*half_by_arm_length
-        )
+        branch_carriage_3 = a3*one_by_arm_length - part_of_branch_carriage_2_2 - part_of_branch_carriage_2*span_3_y
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

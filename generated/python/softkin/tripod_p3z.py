@@ -710,11 +710,11 @@ class TripodP3Z(OffsetKinematics):
         a3 = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z - rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y)
-                - (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
+            -part_of_type2_rods_coplanar
+            *(
+                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
             )
-            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -849,8 +849,8 @@ class TripodP3Z(OffsetKinematics):
         rod_3_y = y - pivot_3_y
         margin_rods_coplanar = (
             (
-                -(rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z - (rod_1_x*rod_3_y - rod_1_y*rod_3_x)*rod_2_z
-                - (rod_1_y*rod_2_x - rod_1_x*rod_2_y)*rod_3_z
+                rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x) + (rod_1_y*rod_3_x - rod_1_x*rod_3_y)*rod_2_z
+                + (rod_1_x*rod_2_y - rod_1_y*rod_2_x)*rod_3_z
             )
             /part_of_margin_rods_coplanar
         )
@@ -939,37 +939,37 @@ class TripodP3Z(OffsetKinematics):
         slope_2_by_z = 2.0*(z - a2)
         slope_3_by_y = 2.0*(y - part_of_slope_3_by_y)
         slope_3_by_z = 2.0*(z - a3)
-        part_of_determinant = slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z
+        part_of_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y
         slope_2_by_x = 2.0*(x - part_of_slope_2_by_x)
         slope_3_by_x = 2.0*(x - part_of_slope_3_by_x)
-        part_of_determinant_2 = slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x
+        part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
         part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
-            part_of_determinant_3*slope_1_by_z - part_of_determinant*slope_1_by_x - part_of_determinant_2*slope_1_by_y
+            part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
         )
         # nothing controls the plate
         if not (abs(determinant) > part_of_determinant_divisor):
             return Status.IMPOSSIBLE
         one_by_determinant = 1.0/determinant
-        slope_1_by_z_times_one_by_determinant = -one_by_determinant*slope_1_by_z
-        slope_2_by_z_times_one_by_determinant = -one_by_determinant*slope_2_by_z
-        slope_3_by_z_times_one_by_determinant = -one_by_determinant*slope_3_by_z
+        slope_1_by_z_times_one_by_determinant = one_by_determinant*slope_1_by_z
+        slope_2_by_z_times_one_by_determinant = one_by_determinant*slope_2_by_z
+        slope_3_by_z_times_one_by_determinant = one_by_determinant*slope_3_by_z
         return (
             (
                 part_of_determinant*slope_1_by_z_times_one_by_determinant,
-                (slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y)*slope_2_by_z_times_one_by_determinant,
-                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*slope_3_by_z_times_one_by_determinant,
+                (slope_1_by_z*slope_3_by_y - slope_1_by_y*slope_3_by_z)*slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_y*slope_2_by_z - slope_1_by_z*slope_2_by_y)*slope_3_by_z_times_one_by_determinant,
             ),
             (
                 part_of_determinant_2*slope_1_by_z_times_one_by_determinant,
-                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*slope_2_by_z_times_one_by_determinant,
-                (slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x)*slope_3_by_z_times_one_by_determinant,
+                (slope_1_by_x*slope_3_by_z - slope_1_by_z*slope_3_by_x)*slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_z*slope_2_by_x - slope_1_by_x*slope_2_by_z)*slope_3_by_z_times_one_by_determinant,
             ),
             (
-                -part_of_determinant_3*slope_1_by_z_times_one_by_determinant,
-                (slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x)*slope_2_by_z_times_one_by_determinant,
-                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*slope_3_by_z_times_one_by_determinant,
+                part_of_determinant_3*slope_1_by_z_times_one_by_determinant,
+                (slope_1_by_y*slope_3_by_x - slope_1_by_x*slope_3_by_y)*slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x)*slope_3_by_z_times_one_by_determinant,
             ),
         )
 
@@ -1051,11 +1051,11 @@ class TripodP3Z(OffsetKinematics):
         a3 = flange_z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_z = flange_z - a3
         type2_rods_coplanar = (
-            (
-                rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x) - (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x
-                - rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
+            part_of_type2_rods_coplanar
+            *(
+                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
+                + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
             )
-            *part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):

@@ -24,9 +24,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 63 additions, 69 multiplications, 5 divisions, 2 square roots, 6 sines
-    inverse: 96 additions, 73 multiplications, 22 divisions, 9 square roots, 3 sines
-    inverse, all 8 branches open: 761 additions, 584 multiplications, 176 divisions, 72 square roots, 24 sines
+    forward: 60 additions, 69 multiplications, 5 divisions, 2 square roots, 6 sines
+    inverse: 85 additions, 67 multiplications, 22 divisions, 9 square roots, 3 sines
+    inverse, all 8 branches open: 673 additions, 536 multiplications, 176 divisions, 72 square roots, 24 sines
 
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -521,7 +521,7 @@ class TripodRotary(OffsetKinematics):
         root_of_3_2 = root(3.0)
         branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
         span_3_y = part_of_pivot_2_y + y  # rod 3
-        branch_knee_3 = ((-span_2_x - root_of_3_2*span_3_y)*sin_a3 - 2.0*span_1_z*cos_a3)*half_by_arm_length_2
+        branch_knee_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)*half_by_arm_length_2
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -648,15 +648,18 @@ class TripodRotary(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
         part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z)*z - part_of_scaled_cosine_a1
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
-        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
-        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        twice_arm_length_1_times_effective_a1 = effective_a1*twice_arm_length_1
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
+        one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -685,15 +688,18 @@ class TripodRotary(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = arm_length_1*effective_a2  # a2: law of cosines in the rod 2 equation
         part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
-        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
-        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y)*y - part_of_scaled_cosine_a2
+        arm_length_1_times_effective_a2 = arm_length_1*effective_a2
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
+        one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -701,19 +707,19 @@ class TripodRotary(OffsetKinematics):
                     + 0.5*abs(
                         (arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
                         + (
-                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     )
                     + 0.5*(arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
                     + 0.5*(arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
                     + (
-                        0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                    )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                        0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                    )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     - 0.5*abs(
                         (arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
                         + (
-                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     )
                 )
             )
@@ -724,14 +730,17 @@ class TripodRotary(OffsetKinematics):
         # a3: its effective length is too short
         if not (effective_a3 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        swing_scale_a3 = arm_length_1*effective_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
-        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
-        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        arm_length_1_times_effective_a3 = arm_length_1*effective_a3
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
+        one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -739,57 +748,43 @@ class TripodRotary(OffsetKinematics):
                     + 0.5*abs(
                         (arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
                         + (
-                            0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
+                            0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
+                        )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
                     )
                     + 0.5*(arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
                     + 0.5*(arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
                     + (
-                        0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
-                    )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
+                        0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
+                    )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
                     - 0.5*abs(
                         (arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
                         + (
-                            0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
+                            0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
+                        )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
                     )
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
-        rod_1_x = x - pivot_1_x
+        rod_1_x = span_1_x + arm_length_1*cos_a1
         sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
-        rod_1_z = z - pivot_1_z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        rod_1_z = span_1_z + arm_length_1*sin_a1
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
-        rod_2_x = x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
-        rod_2_y = y - pivot_2_y
+        rod_2_x = span_2_x - half_arm_length_1*cos_a2
+        rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/effective_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        rod_2_z = z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        rod_2_z = span_1_z + arm_length_1*sin_a2
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
-        rod_3_x = x - pivot_3_x
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
-        rod_3_y = y - pivot_3_y
+        rod_3_x = span_2_x - half_arm_length_1*cos_a3
+        rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half*cos_a3
         sin_a3 = (along_a3*sin_swing_a3 - across_a2*cos_swing_a3)/effective_a3
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        rod_3_z = z - pivot_3_z
+        rod_3_z = span_1_z + arm_length_1*sin_a3
         type2_rods_coplanar = (
             -part_of_type2_rods_coplanar
             *(
@@ -998,7 +993,7 @@ class TripodRotary(OffsetKinematics):
         root_of_3_2 = root(3.0)
         margin_stretched_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
         span_3_y = part_of_pivot_2_y + y  # rod 3
-        margin_stretched_3 = ((-span_2_x - root_of_3_2*span_3_y)*sin_a3 - 2.0*span_1_z*cos_a3)*half_by_arm_length_2
+        margin_stretched_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)*half_by_arm_length_2
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
         rod_2_x = x - pivot_2_x
@@ -1009,8 +1004,8 @@ class TripodRotary(OffsetKinematics):
         rod_3_z = z - pivot_3_z
         margin_rods_coplanar = (
             (
-                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) - (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-                - (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
+                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
+                + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*y
             )
             /part_of_margin_rods_coplanar
         )
@@ -1098,33 +1093,32 @@ class TripodRotary(OffsetKinematics):
             return Status.IMPOSSIBLE
         rise = root(height_square*one_by_normal_square)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
-        twice_x = -2.0*x
-        slope_1_by_x = twice_arm_length_1*cos_a1 - part_of_slope_1_by_x - twice_x
+        twice_x = 2.0*x
+        slope_1_by_x = twice_x + twice_arm_length_1*cos_a1 - part_of_slope_1_by_x
         y = foot_y + normal_y*rise
         slope_1_by_y = 2.0*y
         z = foot_z + pivot_1_z + normal_z*rise
         z_minus_fixed_length_2 = z - fixed_length_2
-        twice_z_minus_fixed_length_2 = -2.0*z_minus_fixed_length_2
-        slope_1_by_z = twice_arm_length_1*sin_a1 - twice_z_minus_fixed_length_2
+        twice_z_minus_fixed_length_2 = 2.0*z_minus_fixed_length_2
+        slope_1_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1*sin_a1
         arm_length_1_times_cos_a2 = arm_length_1*cos_a2
         root_of_3_2 = root(3.0)
         part_of_slope_2_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a2)*root_of_3_2
         slope_2_by_y = slope_1_by_y - part_of_slope_2_by_y
-        slope_2_by_z = twice_arm_length_1*sin_a2 - twice_z_minus_fixed_length_2
+        slope_2_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1*sin_a2
         arm_length_1_times_cos_a3 = arm_length_1*cos_a3
         part_of_slope_3_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a3)*root_of_3_2
         slope_3_by_y = part_of_slope_3_by_y + slope_1_by_y
-        slope_3_by_z = twice_arm_length_1*sin_a3 - twice_z_minus_fixed_length_2
-        part_of_determinant = slope_2_by_z*slope_3_by_y - slope_2_by_y*slope_3_by_z
-        part_of_slope_2_by_x = fixed_length_1_minus_arm_1_radius - twice_x
+        slope_3_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1*sin_a3
+        part_of_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y
+        part_of_slope_2_by_x = fixed_length_1_minus_arm_1_radius + twice_x
         slope_2_by_x = part_of_slope_2_by_x - arm_length_1_times_cos_a2
         slope_3_by_x = part_of_slope_2_by_x - arm_length_1_times_cos_a3
-        part_of_determinant_2 = slope_2_by_x*slope_3_by_z - slope_2_by_z*slope_3_by_x
-        part_of_determinant_3 = slope_2_by_y*slope_3_by_x - slope_2_by_x*slope_3_by_y
+        part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
+        part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
-            -part_of_determinant*slope_1_by_x - part_of_determinant_2*slope_1_by_y
-            - part_of_determinant_3*slope_1_by_z
+            part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
         )
         # nothing controls the plate
         if not (abs(determinant) > part_of_determinant_divisor):
@@ -1135,27 +1129,28 @@ class TripodRotary(OffsetKinematics):
         one_by_determinant_divisor = 1.0/determinant
         part = one_by_determinant_divisor*slope_1_by_a1
         slope_2_by_a2 = (
-            (arm_length_1_times_root_of_3*(0.5*part_of_slope_2_by_y - y) - arm_length_1*(pivot_2_x - x))*sin_a2
+            ((x - pivot_2_x)*arm_length_1 + arm_length_1_times_root_of_3*(0.5*part_of_slope_2_by_y - y))*sin_a2
             + (arm_length_1_times_sin_a2 + z_minus_fixed_length_2)*twice_arm_length_1*cos_a2
         )
         part_2 = one_by_determinant_divisor*slope_2_by_a2
         slope_3_by_a3 = (
-            (arm_length_1_times_root_of_3*(0.5*part_of_slope_3_by_y + y) - arm_length_1*(pivot_3_x - x))*sin_a3
+            ((x - pivot_3_x)*arm_length_1 + arm_length_1_times_root_of_3*(0.5*part_of_slope_3_by_y + y))*sin_a3
             + (arm_length_1_times_sin_a3 + z_minus_fixed_length_2)*twice_arm_length_1*cos_a3
         )
         part_3 = one_by_determinant_divisor*slope_3_by_a3
         return (
             (
-                part*part_of_determinant, -(slope_1_by_z*slope_3_by_y - slope_1_by_y*slope_3_by_z)*part_2,
+                -part*part_of_determinant,
+                part_2*(slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y),
                 (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
             ),
             (
-                part*part_of_determinant_2,
-                -part_2*(slope_1_by_x*slope_3_by_z - slope_1_by_z*slope_3_by_x),
+                -part*part_of_determinant_2,
+                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*part_2,
                 part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
             ),
             (
-                part*part_of_determinant_3,
+                -part*part_of_determinant_3,
                 part_2*(slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x),
                 (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
             ),
@@ -1217,18 +1212,21 @@ class TripodRotary(OffsetKinematics):
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
         flange_y = y - point_y  # the flange behind the point
-        part_of_scaled_cosine_a1_2 = part_of_scaled_cosine_a1 - (fixed_length_2 - span_1_z)*flange_z
+        part_of_scaled_cosine_a1_2 = part_of_scaled_cosine_a1 + (span_1_z - fixed_length_2)*flange_z
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = (
             (fixed_length_1_minus_arm_1_radius - span_1_x)*flange_x - part_of_scaled_cosine_a1_2 - flange_y*flange_y
         )
-        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
-        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        twice_arm_length_1_times_effective_a1 = effective_a1*twice_arm_length_1
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
+        one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -1257,15 +1255,18 @@ class TripodRotary(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        swing_scale_a2 = arm_length_1*effective_a2  # a2: law of cosines in the rod 2 equation
         part_of_scaled_cosine_a2 = flange_x*(part_of_pivot_2_x - span_2_x) - part_of_scaled_cosine_a1_2
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - flange_y*(part_of_pivot_2_y - span_2_y)
-        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
-        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y)*flange_y - part_of_scaled_cosine_a2
+        arm_length_1_times_effective_a2 = arm_length_1*effective_a2
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
+        one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -1273,19 +1274,19 @@ class TripodRotary(OffsetKinematics):
                     + 0.5*abs(
                         (arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
                         + (
-                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     )
                     + 0.5*(arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
                     + 0.5*(arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
                     + (
-                        0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                    )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                        0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                    )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     - 0.5*abs(
                         (arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
                         + (
-                            0.5*(-span_2_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(-span_2_y - root_of_3_2*span_2_x))
+                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
+                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
                     )
                 )
             )
@@ -1296,14 +1297,17 @@ class TripodRotary(OffsetKinematics):
         # a3: its effective length is too short
         if not (effective_a3 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        swing_scale_a3 = arm_length_1*effective_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a3 = flange_y*(part_of_pivot_2_y + span_3_y) - part_of_scaled_cosine_a2
-        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
-        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        arm_length_1_times_effective_a3 = arm_length_1*effective_a3
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
+        one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
@@ -1311,57 +1315,43 @@ class TripodRotary(OffsetKinematics):
                     + 0.5*abs(
                         (arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
                         + (
-                            0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
+                            0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
+                        )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
                     )
                     + 0.5*(arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
                     + 0.5*(arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
                     + (
-                        0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
-                    )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
+                        0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
+                    )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
                     - 0.5*abs(
                         (arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
                         + (
-                            0.5*(span_3_y - root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(span_3_y - root_of_3_2*span_2_x))
+                            0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
+                        )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
                     )
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
-        rod_1_x = flange_x - pivot_1_x
+        rod_1_x = span_1_x + arm_length_1*cos_a1
         sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
-        rod_1_z = flange_z - pivot_1_z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        rod_1_z = span_1_z + arm_length_1*sin_a1
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
-        rod_2_x = flange_x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
-        rod_2_y = flange_y - pivot_2_y
+        rod_2_x = span_2_x - half_arm_length_1*cos_a2
+        rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/effective_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        rod_2_z = flange_z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        rod_2_z = span_1_z + arm_length_1*sin_a2
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
-        rod_3_x = flange_x - pivot_3_x
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
-        rod_3_y = flange_y - pivot_3_y
+        rod_3_x = span_2_x - half_arm_length_1*cos_a3
+        rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half*cos_a3
         sin_a3 = (along_a3*sin_swing_a3 - across_a2*cos_swing_a3)/effective_a3
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        rod_3_z = flange_z - pivot_3_z
+        rod_3_z = span_1_z + arm_length_1*sin_a3
         type2_rods_coplanar = (
             -(
                 flange_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x) + (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x
@@ -1540,7 +1530,7 @@ class TripodRotary(OffsetKinematics):
         root_of_3_2 = root(3.0)
         branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
         span_3_y = flange_y + part_of_pivot_2_y  # rod 3
-        branch_knee_3 = ((-span_2_x - root_of_3_2*span_3_y)*sin_a3 - 2.0*span_1_z*cos_a3)*half_by_arm_length_2
+        branch_knee_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)*half_by_arm_length_2
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

@@ -18,9 +18,9 @@ Singularities:
     a_parallel_c: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 25 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
-    inverse: 70 additions, 64 multiplications, 18 divisions, 3 square roots, 5 sines
-    inverse, all 2 branches open: 107 additions, 83 multiplications, 27 divisions, 4 square roots, 10 sines
+    forward: 22 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
+    inverse: 67 additions, 64 multiplications, 18 divisions, 3 square roots, 5 sines
+    inverse, all 2 branches open: 101 additions, 83 multiplications, 27 divisions, 4 square roots, 10 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,

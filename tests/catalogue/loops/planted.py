@@ -141,12 +141,14 @@ FAULTS = {
         "test_margins.test_type_1_margins_are_those_of_b_and_type_2_of_a",
     ),
     "a leg that reaches too far": Fault(
-        FIVE_BAR, "sine_square_a2 >= -1e-12", "sine_square_a2 >= -1e12",
+        FIVE_BAR, "1.0000000000005 <= cos_swing_a2 <= 1.0000000000005", "1e12 <= cos_swing_a2 <= 1e12",
         "test_reach.test_every_answer_closes_the_loop_on_its_side",
+        (("absolute(cos_swing_a2) <= 1.0000000000005", "absolute(cos_swing_a2) <= 1e12"),),
     ),
     "a leg that does not reach its end": Fault(
-        FIVE_BAR, "sine_square_a1 >= -1e-12", "sine_square_a1 >= 1e-2",
+        FIVE_BAR, "1.0000000000005 <= cos_swing_a1 <= 1.0000000000005", "0.99 <= cos_swing_a1 <= 0.99",
         "test_margins.test_a_way_out_ends_at_a_singularity_or_a_bound",
+        (("absolute(cos_swing_a1) <= 1.0000000000005", "absolute(cos_swing_a1) <= 0.99"),),
     ),
     "a slope of the wrong sign": Fault(
         FIVE_BAR, "slope_2_by_a2 = ", "slope_2_by_a2 = -",

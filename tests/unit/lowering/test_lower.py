@@ -71,6 +71,21 @@ def test_what_divides_three_values_is_inverted() -> None:
     assert cost_of(shorter).divisions == 1 and cost_of(shorter).multiplications == 3
 
 
+def test_the_words_of_a_name_are_those_of_its_value() -> None:
+    """Names that are bound to negatives in the graph change neither the sign in a text nor the words of another name."""
+    lets = (Let(F, -X * A - Y * B), Let(G, F * D * X), Let(H, 2 * F * D * Y), Let(real("k"), (F - D) * X / (Y * (F - D) + 1)))
+    (shorter,), _ = lowered([program(*lets, outputs=(G, H, real("k")))], ())
+    found = lets_of(shorter)
+    assert found["f"] == -X * A - Y * B
+    assert found["f_times_d"] == D * F and found["f_minus_d"] == F - D
+
+
+def test_a_factor_takes_the_sign_that_leaves_no_minus_in_front() -> None:
+    lets = (Let(F, -X * A - Y * B), Let(G, Y * A - X * B), Let(H, (F * Y - G * X) * A))
+    (shorter,), _ = lowered([program(*lets, outputs=(F, G, H))], ())
+    assert lets_of(shorter)["h"] == A * (F * Y - G * X)
+
+
 def test_an_equal_value_under_another_name_is_not_computed_again() -> None:
     one = program(Let(F, X - Y), Let(G, Y - X), Let(H, G * F), outputs=(F, G, H))
     (shorter,), _ = lowered([one], ())

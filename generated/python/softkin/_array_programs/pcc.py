@@ -82,7 +82,6 @@ class ArrayPrograms(Programs):
         mid_a2 = k.mid_a2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        scale_a2_from_a1_squared_times_rounding = k.scale_a2_from_a1_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
@@ -98,7 +97,7 @@ class ArrayPrograms(Programs):
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
-        # 1 - cosine, times the scale
+        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         )
@@ -106,13 +105,13 @@ class ArrayPrograms(Programs):
         one_plus_cos_a2_from_a1 = (
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         )
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
-        # a2_from_a1: out of reach
-        require(status, sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding, Status.UNREACHABLE)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        # a2_from_a1: out of reach
+        require(status, absolute(cos_a2_from_a1) <= 1.0000000000005, Status.UNREACHABLE)
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         sin_a2_from_a1 = 2.0*root(sine_square_a2_from_a1)*sigma_elbow/sum_a2_from_a1
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
@@ -185,7 +184,6 @@ class ArrayPrograms(Programs):
         mid_a2 = k.mid_a2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        scale_a2_from_a1_squared_times_rounding = k.scale_a2_from_a1_squared_times_rounding
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
@@ -201,7 +199,7 @@ class ArrayPrograms(Programs):
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
-        # 1 - cosine, times the scale
+        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         )
@@ -209,13 +207,13 @@ class ArrayPrograms(Programs):
         one_plus_cos_a2_from_a1 = (
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         )
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
-        # a2_from_a1: out of reach
-        require(status, sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding, Status.UNREACHABLE)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        # a2_from_a1: out of reach
+        require(status, absolute(cos_a2_from_a1) <= 1.0000000000005, Status.UNREACHABLE)
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         sin_a2_from_a1_right = 2.0*root(sine_square_a2_from_a1)/sum_a2_from_a1
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:

@@ -47,7 +47,6 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a5 = k.offset_a5
     offset_a6 = k.offset_a6
     rounding_q1 = k.rounding_q1
-    scale_q3 = k.scale_q3
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
@@ -60,7 +59,6 @@ def unrolled(k: Constants) -> Unrolled:
     a2_squared_plus_a3_squared_2 = a2*a2 + a3*a3
     size_q1_for_q3_times_rounding_2 = 1e-12*size_q1_for_q3
     share_of_size_q1_for_q3 = 1.000000001*size_q1_for_q3
-    scale_q3_squared_times_rounding_2 = 1e-12*scale_q3*scale_q3
     offset_a5_times_2 = 2.0*offset_a5
     a2_plus_a3_2 = a2 + a3
     a2_minus_a3_2 = a2 - a3
@@ -240,15 +238,16 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        sine_square_q3_down = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(sum_q3)
+        cos_q3_down = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle_2:
-            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3_down + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
@@ -260,7 +259,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_up_down - open_a2 < 179.999999999:
             axis_a2_left_up_down = nearest_period(axis_a2_left_up_down, open_a2)
-        angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
+        angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3_down + 0.0)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
         axis_a3_left_up_down = offset_a3 + angle_q3_down/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_left_up_down - open_a3 < 179.999999999:
@@ -393,15 +392,16 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        sine_square_q3_up = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(sum_q3)
+        cos_q3_up = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle_2:
-            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3_up + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
@@ -412,7 +412,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left_up_up = offset_a2 + angle_q2_up_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_up_up - open_a2 < 179.999999999:
             axis_a2_left_up_up = nearest_period(axis_a2_left_up_up, open_a2)
-        angle_q3_up = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
+        angle_q3_up = arctan2(sin_q3 + 0.0, cos_q3_up + 0.0)
         axis_a3_left_up_up = offset_a3 + angle_q3_up/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_left_up_up - open_a3 < 179.999999999:
             axis_a3_left_up_up = nearest_period(axis_a3_left_up_up, open_a3)
@@ -449,7 +449,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4_left_down_up = nearest_period(axis_a4_left_down_up, open_a4)
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1:
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6 and sine_square_q3_down >= -scale_q3_squared_times_rounding_2:
+            if axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6 and -1.0000000000005 <= cos_q3_down <= 1.0000000000005:
                 refusal_left_up_down = (
                     0
                     if (axis_a2_left_up_down >= lowest_a2) and (axis_a3_left_up_down >= lowest_a3) and (axis_a4_left_up_down >= lowest_a4) and (
@@ -468,7 +468,7 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_left_up_down = 3
                 refusal_left_down_down = 3
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6 and sine_square_q3_up >= -scale_q3_squared_times_rounding_2:
+            if axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6 and -1.0000000000005 <= cos_q3_up <= 1.0000000000005:
                 refusal_left_up_up = (
                     0
                     if (axis_a2_left_up_up >= lowest_a2) and (axis_a3_left_up_up >= lowest_a3) and (axis_a4_left_up_up >= lowest_a4) and (
@@ -620,15 +620,16 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        sine_square_q3_down = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(sum_q3)
+        cos_q3_down = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle_2:
-            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3_down + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
@@ -639,7 +640,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_up_down - open_a2 < 179.999999999:
             axis_a2_right_up_down = nearest_period(axis_a2_right_up_down, open_a2)
-        angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
+        angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3_down + 0.0)
         axis_a3_right_up_down = offset_a3 + angle_q3_down/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_right_up_down - open_a3 < 179.999999999:
             axis_a3_right_up_down = nearest_period(axis_a3_right_up_down, open_a3)
@@ -767,15 +768,16 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        sine_square_q3_up = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(sum_q3)
+        cos_q3_up = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle_2:
-            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3_up + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
@@ -786,7 +788,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right_up_up = offset_a2 + angle_q2_up_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_up_up - open_a2 < 179.999999999:
             axis_a2_right_up_up = nearest_period(axis_a2_right_up_up, open_a2)
-        angle_q3_up = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
+        angle_q3_up = arctan2(sin_q3 + 0.0, cos_q3_up + 0.0)
         axis_a3_right_up_up = offset_a3 + angle_q3_up/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_right_up_up - open_a3 < 179.999999999:
             axis_a3_right_up_up = nearest_period(axis_a3_right_up_up, open_a3)
@@ -823,7 +825,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4_right_down_up = nearest_period(axis_a4_right_down_up, open_a4)
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6 and sine_square_q3_down >= -scale_q3_squared_times_rounding_2:
+            if axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6 and -1.0000000000005 <= cos_q3_down <= 1.0000000000005:
                 refusal_right_up_down = (
                     0
                     if (axis_a2_right_up_down >= lowest_a2) and (axis_a3_right_up_down >= lowest_a3) and (axis_a4_right_up_down >= lowest_a4) and (
@@ -842,7 +844,7 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_right_up_down = 3
                 refusal_right_down_down = 3
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6 and sine_square_q3_up >= -scale_q3_squared_times_rounding_2:
+            if axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6 and -1.0000000000005 <= cos_q3_up <= 1.0000000000005:
                 refusal_right_up_up = (
                     0
                     if (axis_a2_right_up_up >= lowest_a2) and (axis_a3_right_up_up >= lowest_a3) and (axis_a4_right_up_up >= lowest_a4) and (
@@ -1098,14 +1100,15 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_left_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
-        axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*RADIAN
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        refusal_left_down = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
+        axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*RADIAN
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
@@ -1232,13 +1235,14 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_left_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        refusal_left_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
@@ -1389,14 +1393,15 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_right_down = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
-        axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*RADIAN
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        refusal_right_down = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
+        axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*RADIAN
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
@@ -1523,13 +1528,14 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_right_up = 0 if sine_square_q3 >= -scale_q3_squared_times_rounding_2 else 3  # q3: out of reach
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        refusal_right_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
@@ -1759,15 +1765,16 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)  # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        # q3: out of reach
-        if not (sine_square_q3 >= -scale_q3_squared_times_rounding_2):
-            return None
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # q3: out of reach
+        if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
+            return None
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(sum_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_q2 = arctan2(wrist_y_from_q1, wrist_x_from_q1) - arctan2(a3*sin_q3, a2 + a3*cos_q3)

@@ -53,15 +53,12 @@ def unrolled(k: Constants) -> Unrolled:
     constant_part = base_radius_1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
     constant_part_2 = base_radius_1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
     inner_arm_1_times_shortest_link_2 = 1e-9*inner_arm_1
-    inner_arm_1_times_2 = 2.0*inner_arm_1
     constant_part_3 = base_radius_2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
     constant_part_4 = base_radius_2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
     inner_arm_2_times_shortest_link_2 = 1e-9*inner_arm_2
-    inner_arm_2_times_2 = 2.0*inner_arm_2
     constant_part_5 = base_radius_3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
     constant_part_6 = base_radius_3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
     inner_arm_3_times_shortest_link_2 = 1e-9*inner_arm_3
-    inner_arm_3_times_2 = 2.0*inner_arm_3
     cos_azimuth_1_times_inner_arm_1_2 = inner_arm_1*cos_azimuth_1
     inner_arm_1_times_sin_azimuth_1_2 = inner_arm_1*sin_azimuth_1
     cos_azimuth_2_times_inner_arm_2_2 = inner_arm_2*cos_azimuth_2
@@ -88,20 +85,21 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link_2):
             return 8*(3,)
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # square of the third side
         third_square_a1 = (
             (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
             *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
         )
-        # 1 - cosine, times the scale
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 8*(3,)
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = y - constant_part_4  # rod 2
@@ -110,20 +108,21 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link_2):
             return 8*(3,)
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # square of the third side
         third_square_a2 = (
             (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
             *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
         )
-        # 1 - cosine, times the scale
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 8*(3,)
         span_3_x = x - constant_part_5  # rod 3
         span_3_y = y - constant_part_6  # rod 3
@@ -132,36 +131,33 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link_2):
             return 8*(3,)
-        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
-        swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # square of the third side
         third_square_a3 = (
             (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
             *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
         )
-        # 1 - cosine, times the scale
+        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return 8*(3,)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
         cos_swing_a1_times_z_by_divisor_a1 = z*cos_swing_a1/divisor_a1
         along_a1_times_sin_swing_a1_by_divisor_a1 = along_a1*sin_swing_a1/divisor_a1
         sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
@@ -173,11 +169,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
         rod_2_z_outward = minus_pivot_2_z + z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
         sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
@@ -425,20 +419,21 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link_2):
             return 8*(None,)
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # square of the third side
         third_square_a1 = (
             (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
             *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
         )
-        # 1 - cosine, times the scale
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 8*(None,)
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = y - constant_part_4  # rod 2
@@ -447,20 +442,21 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link_2):
             return 8*(None,)
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # square of the third side
         third_square_a2 = (
             (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
             *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
         )
-        # 1 - cosine, times the scale
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 8*(None,)
         span_3_x = x - constant_part_5  # rod 3
         span_3_y = y - constant_part_6  # rod 3
@@ -469,26 +465,25 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link_2):
             return 8*(None,)
-        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
-        swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # square of the third side
         third_square_a3 = (
             (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
             *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
         )
-        # 1 - cosine, times the scale
+        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return 8*(None,)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
         pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
@@ -500,11 +495,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
         minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
         rod_1_z = minus_pivot_1_z + z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
@@ -516,11 +509,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
         rod_2_z_outward = minus_pivot_2_z + z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
         sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3
@@ -664,20 +655,21 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link_2):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # square of the third side
         third_square_a1 = (
             (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
             *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
         )
-        # 1 - cosine, times the scale
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link_2 else 1.0
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = y - constant_part_4  # rod 2
@@ -686,20 +678,21 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link_2):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # square of the third side
         third_square_a2 = (
             (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
             *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
         )
-        # 1 - cosine, times the scale
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link_2 else 1.0
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
         span_3_x = x - constant_part_5  # rod 3
         span_3_y = y - constant_part_6  # rod 3
@@ -708,24 +701,23 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link_2):
             return None
-        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
-        swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # square of the third side
         third_square_a3 = (
             (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
             *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
         )
-        # 1 - cosine, times the scale
+        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link_2 else 1.0
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return None
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
         pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1_2  # rod 1
@@ -735,9 +727,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
         minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
         rod_1_z = minus_pivot_1_z + z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2_2  # rod 2
@@ -747,9 +737,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
         rod_2_z = minus_pivot_2_z + z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3_2  # rod 3

@@ -36,7 +36,6 @@ def unrolled(k: Constants) -> Unrolled:
     swap_xy = k.swap_xy
     machine_scale_times_plane_2 = 1e-6*machine_scale
     link_length_1_times_shortest_link_2 = 1e-9*link_length_1
-    link_length_1_times_2 = 2.0*link_length_1
     link_length_1_times_link_length_3_by_link_length_2 = link_length_1*link_length_3/link_length_2
     link_length_3_by_link_length_2_2 = link_length_3/link_length_2
     link_length_1_times_link_length_2 = link_length_1*link_length_2
@@ -44,7 +43,6 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_5_times_shortest_link_2 = 1e-9*link_length_5
     link_length_2_by_link_length_3_2 = link_length_2/link_length_3
     constant_part = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
-    link_length_5_times_2 = 2.0*link_length_5
     link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
     link_length_4_plus_link_length_5_2 = link_length_4 + link_length_5
@@ -77,10 +75,9 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > link_length_1_times_shortest_link_2):
             return 4*(3,)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
         divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
         divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
         )
@@ -88,15 +85,15 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a1 = (
             (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return 4*(3,)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # a1: out of reach
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
+            return 4*(3,)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
         sin_a1_left = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
         pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
@@ -140,7 +137,7 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
         )
@@ -167,7 +164,6 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_left - open_a2 < 179.999999999:
             axis_a2_left_left = nearest_period(axis_a2_left_left, open_a2)
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
@@ -182,7 +178,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_left_right - open_a2 < 179.999999999:
             axis_a2_left_right = nearest_period(axis_a2_left_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
-        if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             rod_1_x = x - centre_1_x_left
             rod_1_y = y - centre_1_y_left
             part_of_pivot_rear_x = (
@@ -244,7 +240,7 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
         )
@@ -266,7 +262,6 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_left - open_a2 < 179.999999999:
             axis_a2_right_left = nearest_period(axis_a2_right_left, open_a2)
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
@@ -276,7 +271,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_right_right - open_a2 < 179.999999999:
             axis_a2_right_right = nearest_period(axis_a2_right_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
-        if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             rod_1_x = x - centre_1_x_right
             rod_1_y = y - centre_1_y_right
             part_of_pivot_rear_x_left_right = (
@@ -346,10 +341,9 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > link_length_1_times_shortest_link_2):
             return 4*(None,)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
         divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
         divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
         )
@@ -357,15 +351,15 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a1 = (
             (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return 4*(None,)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # a1: out of reach
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
+            return 4*(None,)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
         sin_a1_left = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
         pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
@@ -409,7 +403,7 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
         )
@@ -432,7 +426,6 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_left_left = (
             across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_a2_left_right = (
             along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
@@ -440,7 +433,7 @@ def unrolled(k: Constants) -> Unrolled:
             across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        if effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             rod_1_x = x - centre_1_x_left
             rod_1_y = y - centre_1_y_left
             part_of_pivot_rear_x = (
@@ -491,7 +484,7 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
         )
@@ -510,11 +503,10 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
         sin_a2_right_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_a2_right_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
         sin_a2_right_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        if effective_a2 > link_length_5_times_shortest_link_2 and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if effective_a2 > link_length_5_times_shortest_link_2 and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             rod_1_x = x - centre_1_x_right
             rod_1_y = y - centre_1_y_right
             part_of_pivot_rear_x_left_right = (
@@ -590,8 +582,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > link_length_1_times_shortest_link_2):
             return None
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (divisor_a1 + link_length_1_minus_link_length_2_2)*(divisor_a1 + link_length_1_plus_link_length_2_2)
         )
@@ -599,13 +590,13 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a1 = (
             (link_length_1_plus_link_length_2_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2_2)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            return None
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # a1: out of reach
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
+            return None
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear
@@ -630,8 +621,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a2 > link_length_5_times_shortest_link_2):
             return None
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2 + link_length_4_plus_link_length_5_2)*(divisor_a2 - link_length_4_minus_link_length_5)
         )
@@ -639,9 +629,11 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (
             (link_length_4_plus_link_length_5_2 - divisor_a2)*(divisor_a2 + link_length_4_minus_link_length_5)
         )
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
@@ -651,9 +643,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             centre_1_x = pivot_upper_x
             centre_1_y = pivot_upper_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear

@@ -35,7 +35,6 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_plane_2 = 1e-6*machine_scale
     displacement_minus_tcp_link_distance_by_2 = displacement - 0.5*tcp_link_distance
     inner_arm_times_shortest_link_2 = 1e-9*inner_arm
-    inner_arm_times_2 = 2.0*inner_arm
     assembly_sign_by_outer_arm_squared_2 = assembly_sign/(outer_arm*outer_arm)
     inner_arm_minus_outer_arm_2 = inner_arm - outer_arm
     inner_arm_plus_outer_arm_2 = inner_arm + outer_arm
@@ -60,16 +59,17 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return 4*(3,)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
         divisor_a1_minus_outer_arm = divisor_a1 - outer_arm
         divisor_a1_plus_outer_arm = divisor_a1 + outer_arm
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = (inner_arm - divisor_a1_minus_outer_arm)*(divisor_a1_plus_outer_arm - inner_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1_minus_outer_arm + inner_arm)*(divisor_a1_plus_outer_arm + inner_arm)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4*(3,)
         span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
@@ -77,32 +77,29 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return 4*(3,)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
         divisor_a2_minus_outer_arm = divisor_a2 - outer_arm
         divisor_a2_plus_outer_arm = divisor_a2 + outer_arm
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm - divisor_a2_minus_outer_arm)*(divisor_a2_plus_outer_arm - inner_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2_minus_outer_arm + inner_arm)*(divisor_a2_plus_outer_arm + inner_arm)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 4*(3,)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
         pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
@@ -201,16 +198,17 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return 4*(None,)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
         divisor_a1_minus_outer_arm = divisor_a1 - outer_arm
         divisor_a1_plus_outer_arm = divisor_a1 + outer_arm
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = (inner_arm - divisor_a1_minus_outer_arm)*(divisor_a1_plus_outer_arm - inner_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1_minus_outer_arm + inner_arm)*(divisor_a1_plus_outer_arm + inner_arm)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4*(None,)
         span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
@@ -218,22 +216,21 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return 4*(None,)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
         divisor_a2_minus_outer_arm = divisor_a2 - outer_arm
         divisor_a2_plus_outer_arm = divisor_a2 + outer_arm
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm - divisor_a2_minus_outer_arm)*(divisor_a2_plus_outer_arm - inner_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2_minus_outer_arm + inner_arm)*(divisor_a2_plus_outer_arm + inner_arm)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 4*(None,)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
         pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
@@ -243,11 +240,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
         pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
@@ -305,14 +300,15 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return None
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
-        # 1 - cosine, times the scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
         one_less_cos_a1 = (inner_arm_plus_outer_arm_2 - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm_2)*(divisor_a1 + inner_arm_plus_outer_arm_2)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
         span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
@@ -320,26 +316,23 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return None
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
-        swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm_2 - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm_2)*(divisor_a2 + inner_arm_plus_outer_arm_2)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
         pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
         sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2/divisor_a2
         pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2

@@ -28,11 +28,9 @@ def unrolled(k: Constants) -> Unrolled:
     mid_a2 = k.mid_a2
     offset_a1 = k.offset_a1
     offset_a2 = k.offset_a2
-    scale_a2_from_a1 = k.scale_a2_from_a1
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     machine_scale_times_plane_2 = 1e-6*machine_scale
-    scale_a2_from_a1_squared_times_rounding_2 = 1e-12*scale_a2_from_a1*scale_a2_from_a1
     machine_scale_times_free_angle_2 = 1e-11*machine_scale
     link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
@@ -54,7 +52,7 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # 1 - cosine, times the scale
+        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         )
@@ -62,14 +60,14 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2_from_a1 = (
             (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
         )
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
-        # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding_2):
-            return 2*(3,)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        # a2_from_a1: out of reach
+        if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
+            return 2*(3,)
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         sin_a2_from_a1 = 2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/sum_a2_from_a1
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(
@@ -134,7 +132,7 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # 1 - cosine, times the scale
+        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         )
@@ -142,14 +140,14 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2_from_a1 = (
             (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
         )
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
-        # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding_2):
-            return 2*(None,)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        # a2_from_a1: out of reach
+        if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
+            return 2*(None,)
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         sin_a2_from_a1 = 2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/sum_a2_from_a1
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
@@ -177,7 +175,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
         reach = sqrt(x*x + y*y)
-        # 1 - cosine, times the scale
+        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         )
@@ -185,14 +183,14 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2_from_a1 = (
             (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         )
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
-        # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding_2):
-            return None
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        # a2_from_a1: out of reach
+        if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
+            return None
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         sin_a2_from_a1 = (
             2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
         )

@@ -39,11 +39,9 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
-    swing_scale_q3_2 = k.swing_scale_q3_2
     machine_scale_squared_times_plane_2 = 1e-6*machine_scale*machine_scale
     machine_scale_times_free_angle_2 = 1e-11*machine_scale
     angle_of_a3_by_effective_q3_2 = arctan2(d4/effective_q3_2 + 0.0, a3/effective_q3_2 + 0.0)
-    swing_scale_q3_2_squared_times_rounding_2 = 1e-12*swing_scale_q3_2*swing_scale_q3_2
     a2_plus_effective_q3_2_2 = a2 + effective_q3_2
     a2_minus_effective_q3_2_2 = a2 - effective_q3_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
@@ -76,13 +74,13 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         if reach > machine_scale_times_free_angle_2:
@@ -134,7 +132,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
             axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
         # limits of A2, limits of A3
-        if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2:
+        if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005:
             refusal_front_down = (
                 0
                 if (axis_a2_front_down >= lowest_a2) and (axis_a3_front_down >= lowest_a3) and (
@@ -156,13 +154,13 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         if reach > machine_scale_times_free_angle_2:
@@ -194,7 +192,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
             axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
         # limits of A2, limits of A3
-        if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2:
+        if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005:
             refusal_back_down = (
                 0
                 if (axis_a2_back_down >= lowest_a2) and (axis_a3_back_down >= lowest_a3) and (
@@ -245,12 +243,14 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_front = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2 else 3  # q3: out of reach
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_y = d3*y
@@ -269,10 +269,8 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*RADIAN
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -287,17 +285,17 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        refusal_back = 0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2 else 3  # q3: out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        refusal_back = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
+        axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -364,13 +362,15 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # 1 - cosine, times the scale
+        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach)*(a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2)*(a2_minus_effective_q3_2_2 + reach)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         # q3: out of reach
-        if not (sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding_2):
+        if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle_2:
@@ -381,10 +381,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         if reach > machine_scale_times_free_angle_2:
             angle_q2 = (
                 arctan2(-effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)

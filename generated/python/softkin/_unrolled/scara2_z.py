@@ -29,10 +29,8 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a1 = k.offset_a1
     offset_a2 = k.offset_a2
     offset_z = k.offset_z
-    scale_a2 = k.scale_a2
     single_a1 = k.single_a1
     single_a2 = k.single_a2
-    scale_a2_squared_times_rounding_2 = 1e-12*scale_a2*scale_a2
     machine_scale_times_free_angle_2 = 1e-11*machine_scale
     offset_a2_times_2 = 2.0*offset_a2
     arm_length_1_plus_arm_length_2_2 = arm_length_1 + arm_length_2
@@ -52,21 +50,21 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         arm_length_1_minus_reach = arm_length_1 - reach
         arm_length_1_plus_reach = arm_length_1 + reach
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (arm_length_1_minus_reach + arm_length_2)*(arm_length_1_plus_reach + arm_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (arm_length_2 - arm_length_1_minus_reach)*(arm_length_1_plus_reach - arm_length_2)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
+        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2*(3,)
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
             return 2*(3,)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2 + 0.0, arm_length_1 + arm_length_2*cos_a2 + 0.0)
@@ -119,17 +117,17 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         arm_length_1_minus_reach = arm_length_1 - reach
         arm_length_1_plus_reach = arm_length_1 + reach
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (arm_length_1_minus_reach + arm_length_2)*(arm_length_1_plus_reach + arm_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (arm_length_2 - arm_length_1_minus_reach)*(arm_length_1_plus_reach - arm_length_2)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
-            return 2*(None,)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # a2: out of reach
+        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+            return 2*(None,)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)
@@ -153,17 +151,17 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_elbow,) = signs
         ref_a1, _, _ = 3*(0.0,) if reference is None else reference
         reach = sqrt(x*x + y*y)
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2_2 + reach)*(arm_length_1_plus_arm_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2_2)*(arm_length_1_minus_arm_length_2_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
-            return None
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # a2: out of reach
+        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+            return None
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         if reach > machine_scale_times_free_angle_2:
             angle_a1 = arctan2(y, x) - arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)

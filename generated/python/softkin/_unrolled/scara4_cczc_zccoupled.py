@@ -36,11 +36,9 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a3 = k.offset_a3
     offset_a4 = k.offset_a4
     pitch_zc = k.pitch_zc
-    scale_a2 = k.scale_a2
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a4 = k.single_a4
-    scale_a2_squared_times_rounding_2 = 1e-12*scale_a2*scale_a2
     machine_scale_times_free_angle_2 = 1e-11*machine_scale
     pitch_zc_by_360 = pitch_zc/360.0
     link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
@@ -72,17 +70,17 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
-            return 2*(3,)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # a2: out of reach
+        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+            return 2*(3,)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
@@ -163,17 +161,17 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
-            return 2*(None,)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # a2: out of reach
+        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+            return 2*(None,)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
@@ -222,17 +220,17 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return None
         reach = sqrt(x*x + y*y)
-        # 1 - cosine, times the scale
+        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        # a2: out of reach
-        if not (sine_square_a2 >= -scale_a2_squared_times_rounding_2):
-            return None
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # a2: out of reach
+        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+            return None
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         if reach > machine_scale_times_free_angle_2:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)

@@ -34,11 +34,9 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a2 = k.offset_a2
     offset_a3 = k.offset_a3
     offset_a4 = k.offset_a4
-    scale_a3 = k.scale_a3
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     single_a4 = k.single_a4
-    scale_a3_squared_times_rounding_2 = 1e-12*scale_a3*scale_a3
     machine_scale_times_free_angle_2 = 1e-11*machine_scale
     link_length_1_plus_link_length_2_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2_2 = link_length_1 - link_length_2
@@ -69,21 +67,21 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # 1 - cosine, times the scale
+        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -scale_a3_squared_times_rounding_2):
+        if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
             return 2*(3,)
         axis_a1 = offset_a1 + z
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return 2*(3,)
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3 + 0.0, link_length_1 + link_length_2*cos_a3 + 0.0)
@@ -158,18 +156,18 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # 1 - cosine, times the scale
+        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        # a3: out of reach
-        if not (sine_square_a3 >= -scale_a3_squared_times_rounding_2):
-            return 2*(None,)
-        axis_a1 = offset_a1 + z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # a3: out of reach
+        if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
+            return 2*(None,)
+        axis_a1 = offset_a1 + z
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
@@ -207,17 +205,17 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # 1 - cosine, times the scale
+        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        # a3: out of reach
-        if not (sine_square_a3 >= -scale_a3_squared_times_rounding_2):
-            return None
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # a3: out of reach
+        if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
+            return None
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
         if reach > machine_scale_times_free_angle_2:
             angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)

@@ -35,14 +35,14 @@ def unrolled(k: Constants) -> Unrolled:
     arm_length_squared_2 = arm_length*arm_length
     cos_rail_angle_squared_2 = cos_rail_angle*cos_rail_angle
     inner_radius_minus_outer_radius_2 = inner_radius - outer_radius
-    sin_rail_angle_squared_2 = sin_rail_angle*sin_rail_angle
+    sin_rail_angle_squared = sin_rail_angle*sin_rail_angle
     cos_rail_angle_times_sin_rail_angle_times_2 = 2.0*cos_rail_angle*sin_rail_angle
     arm_length_squared_times_rounding_2 = 1e-12*arm_length*arm_length
     inner_radius_by_2_minus_outer_radius_by_2 = 0.5*inner_radius - 0.5*outer_radius
     sin_rail_angle_squared_by_4 = 0.25*sin_rail_angle*sin_rail_angle
     cos_rail_angle_times_sin_rail_angle_2 = cos_rail_angle*sin_rail_angle
     constant_part = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius
-    sin_rail_angle_squared_times_3_by_4_2 = 0.75*sin_rail_angle*sin_rail_angle
+    sin_rail_angle_squared_times_3_by_4 = 0.75*sin_rail_angle*sin_rail_angle
     root_of_3_times_sin_rail_angle_squared_by_2 = 0.5*root(3.0)*sin_rail_angle*sin_rail_angle
     constant_part_2 = root(3.0)*cos_rail_angle*sin_rail_angle
     one_by_2_by_arm_length = 0.5/arm_length
@@ -63,7 +63,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
             part_of_root_square_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
-            + span_1_x*span_1_x*sin_rail_angle_squared_2 - span_1_x*span_1_x - y*y
+            + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
@@ -76,7 +76,7 @@ def unrolled(k: Constants) -> Unrolled:
         span_2_y = y - constant_part  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4_2
+            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
             - part_of_root_square_a2_2 - span_2_y*span_2_y
             - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
@@ -87,7 +87,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
             root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
-            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4_2 - part_of_root_square_a2_2 - span_3_y*span_3_y
+            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4 - part_of_root_square_a2_2 - span_3_y*span_3_y
             - constant_part_2*span_3_y*z
         )
         # rod 3 cannot reach
@@ -342,7 +342,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
             part_of_root_square_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
-            + span_1_x*span_1_x*sin_rail_angle_squared_2 - span_1_x*span_1_x - y*y
+            + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
@@ -355,7 +355,7 @@ def unrolled(k: Constants) -> Unrolled:
         span_2_y = y - constant_part  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4_2
+            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
             - part_of_root_square_a2_2 - span_2_y*span_2_y
             - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
@@ -366,7 +366,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
             root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
-            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4_2 - part_of_root_square_a2_2 - span_3_y*span_3_y
+            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4 - part_of_root_square_a2_2 - span_3_y*span_3_y
             - constant_part_2*span_3_y*z
         )
         # rod 3 cannot reach
@@ -537,7 +537,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
             arm_length_squared_2 + z*z*cos_rail_angle_squared_2
-            + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2 + span_1_x*span_1_x*sin_rail_angle_squared_2
+            + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2 + span_1_x*span_1_x*sin_rail_angle_squared
             - span_1_x*span_1_x - y*y - z*z
         )
         # rod 1 cannot reach
@@ -548,7 +548,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
             arm_length_squared_2 + constant_part_2*span_2_y*z + z*z*cos_rail_angle_squared_2
-            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4_2
+            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
             - span_2_x*span_2_x - span_2_y*span_2_y - z*z - span_2_x*z*cos_rail_angle_times_sin_rail_angle_2
             - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
@@ -560,7 +560,7 @@ def unrolled(k: Constants) -> Unrolled:
         root_square_a3 = (
             arm_length_squared_2 + z*z*cos_rail_angle_squared_2
             + root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
-            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4_2
+            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4
             - span_2_x*span_2_x - span_3_y*span_3_y - z*z - constant_part_2*span_3_y*z
             - span_2_x*z*cos_rail_angle_times_sin_rail_angle_2
         )

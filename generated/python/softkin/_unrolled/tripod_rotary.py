@@ -69,16 +69,19 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return 8*(3,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
+        arm_length_1_times_divisor_a1_times_2 = arm_length_1_times_2*divisor_a1
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = (
             constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
         )
-        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
-        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        one_less_cos_a1 = arm_length_1_times_divisor_a1_times_2 - scaled_cosine_a1
+        one_plus_cos_a1 = arm_length_1_times_divisor_a1_times_2 + scaled_cosine_a1  # 1 + cosine, times the scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 8*(3,)
         span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
         span_2_y = constant_part_2 + y  # rod 2
@@ -89,18 +92,21 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a2 > share_of_arm_length_1):
             return 8*(3,)
         divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
-        swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
+        arm_length_1_times_divisor_a2 = arm_length_1*divisor_a2
         part_of_scaled_cosine_a2 = (
             (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_1_z - fixed_length_2)*z
         )
         part_of_scaled_cosine_a2_2 = constant_part - part_of_scaled_cosine_a2
         # cosine times the scale, seen from the origin
         scaled_cosine_a2 = (constant_part_2 + span_2_y)*y - part_of_scaled_cosine_a2_2
-        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
-        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        one_less_cos_a2 = arm_length_1_times_divisor_a2 - scaled_cosine_a2
+        one_plus_cos_a2 = arm_length_1_times_divisor_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 8*(3,)
         span_3_y = y - constant_part_2  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
@@ -109,14 +115,17 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a3 > share_of_arm_length_1):
             return 8*(3,)
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
-        swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
+        arm_length_1_times_divisor_a3 = arm_length_1*divisor_a3
         # cosine times the scale, seen from the origin
         scaled_cosine_a3 = (span_3_y - constant_part_2)*y - part_of_scaled_cosine_a2_2
-        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
-        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        one_less_cos_a3 = arm_length_1_times_divisor_a3 - scaled_cosine_a3
+        one_plus_cos_a3 = arm_length_1_times_divisor_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return 8*(3,)
         # ball joint of rod 1
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
@@ -127,11 +136,9 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(3,)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
         pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
@@ -141,11 +148,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = -across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z_outward = z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
         across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - across_a2_times_sin_swing_a3_by_divisor_a3
         pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
@@ -156,11 +161,9 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z_outward = z - pivot_3_z
         part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
@@ -411,16 +414,19 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return 8*(None,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
+        arm_length_1_times_divisor_a1_times_2 = arm_length_1_times_2*divisor_a1
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = (
             constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
         )
-        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
-        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        one_less_cos_a1 = arm_length_1_times_divisor_a1_times_2 - scaled_cosine_a1
+        one_plus_cos_a1 = arm_length_1_times_divisor_a1_times_2 + scaled_cosine_a1  # 1 + cosine, times the scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 8*(None,)
         span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
         span_2_y = constant_part_2 + y  # rod 2
@@ -431,18 +437,21 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a2 > share_of_arm_length_1):
             return 8*(None,)
         divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
-        swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
+        arm_length_1_times_divisor_a2 = arm_length_1*divisor_a2
         part_of_scaled_cosine_a2 = (
             (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_1_z - fixed_length_2)*z
         )
         part_of_scaled_cosine_a2_2 = constant_part - part_of_scaled_cosine_a2
         # cosine times the scale, seen from the origin
         scaled_cosine_a2 = (constant_part_2 + span_2_y)*y - part_of_scaled_cosine_a2_2
-        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
-        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        one_less_cos_a2 = arm_length_1_times_divisor_a2 - scaled_cosine_a2
+        one_plus_cos_a2 = arm_length_1_times_divisor_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 8*(None,)
         span_3_y = y - constant_part_2  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
@@ -451,14 +460,17 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a3 > share_of_arm_length_1):
             return 8*(None,)
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
-        swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
+        arm_length_1_times_divisor_a3 = arm_length_1*divisor_a3
         # cosine times the scale, seen from the origin
         scaled_cosine_a3 = (span_3_y - constant_part_2)*y - part_of_scaled_cosine_a2_2
-        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
-        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        one_less_cos_a3 = arm_length_1_times_divisor_a3 - scaled_cosine_a3
+        one_plus_cos_a3 = arm_length_1_times_divisor_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return 8*(None,)
         # ball joint of rod 1
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
@@ -469,11 +481,9 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
         pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
@@ -483,11 +493,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = -across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z_outward = z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
         across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - across_a2_times_sin_swing_a3_by_divisor_a3
         pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
@@ -498,11 +506,9 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z_outward = z - pivot_3_z
         part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
         pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
@@ -654,17 +660,19 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
-        swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a1 = (
             constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
         )
-        one_less_cos_a1 = arm_length_1_times_2*divisor_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
+        divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
+        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        one_less_cos_a1 = arm_length_1_times_2*divisor_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + arm_length_1_times_2*divisor_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
         span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
         span_2_y = constant_part_2 + y  # rod 2
@@ -674,18 +682,20 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > share_of_arm_length_1):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
-        swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a2 = (
             (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (constant_part_2 + span_2_y)*y
             + (span_1_z - fixed_length_2)*z - constant_part
         )
-        one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
+        divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
+        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2
         one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1*divisor_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
         span_3_y = y - constant_part_2  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
@@ -693,22 +703,22 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: its effective length is too short
         if not (effective_a3 > share_of_arm_length_1):
             return None
-        divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
-        swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
         scaled_cosine_a3 = (
             (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_3_y - constant_part_2)*y
             + (span_1_z - fixed_length_2)*z - constant_part
         )
-        one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
+        divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
+        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3
         one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1*divisor_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return None
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
         pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
@@ -716,9 +726,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
         pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
@@ -728,9 +736,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
         pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3

@@ -1,0 +1,33 @@
+"""Who reads a value in a draft: other values, and statements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TypeAlias
+
+from derive.ir.graph import Node
+from derive.lowering.draft import Draft, Effect, values_of
+
+Readers: TypeAlias = Mapping[Node, tuple[Node | None, ...]]
+"""By node: the nodes that read it, and None for each statement and output that does."""
+
+
+def readers_of(draft: Draft) -> Readers:
+    """The readers of all nodes of a draft, those of the amount of a reason among them."""
+    found: dict[Node, list[Node | None]] = {}
+    pending: list[Node] = []
+
+    def read(node: Node, reader: Node | None) -> None:
+        if node not in found:
+            found[node] = []
+            pending.append(node)
+        found[node].append(reader)
+
+    told = (value for item in draft.items if isinstance(item, Effect) for _, value in item.told)
+    for value in (*values_of(draft), *told):
+        read(value.node, None)
+    while pending:
+        reader = pending.pop()
+        for node in reader.sources():
+            read(node, reader)
+    return {node: tuple(readers) for node, readers in found.items()}
