@@ -43,7 +43,7 @@ _SHARED = "softkin"
 """The folder of the objects that all blocks share."""
 _PREAMBLE = f"""\
 // {GENERATED}
-// To paste: between two rulers stands the declaration or the implementation of the object that the upper one names.
+// To paste: the text between two rulers is the declaration or implementation of the object named in the upper ruler.
 """
 
 

@@ -64,7 +64,7 @@ class ArrayPrograms(Programs):
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -129,7 +129,7 @@ class ArrayPrograms(Programs):
         r31_at_q5 = cos_q5*sin_q234
         r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6
         r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
         wrist_y = d6_times_r22_at_q5 + y
         branch_shoulder = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
@@ -196,7 +196,7 @@ class ArrayPrograms(Programs):
         size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
         twice_d5 = k.twice_d5
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -206,23 +206,25 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)
         distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = -root(ahead_squared_q1)*sigma_shoulder
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)  # its reference where it is free
+            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/distance_q1_squared
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
@@ -333,7 +335,7 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q1_for_q3
             r22_from_q1_before_q6_before_q1_for_q3 = r32*cos_q6_before_q1_for_q3 + r31*sin_q6_before_q1_for_q3
             wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3
-            # a later step needs this of q1: no larger in size than
+            # q3 has solutions where this is within its bound
             value_q1_for_q3 = (
                 wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
                 + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - a2_squared_plus_a3_squared
@@ -359,7 +361,7 @@ class ArrayPrograms(Programs):
                 wrist_x_from_q1_rate_q1_for_q3 = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3
                 r22_from_q1_before_q6_rate_q1_for_q3 = r32*cos_q6_rate_q1_for_q3 + r31*sin_q6_rate_q1_for_q3
                 wrist_y_from_q1_rate_q1_for_q3 = d5*r22_from_q1_before_q6_rate_q1_for_q3
-                # how it changes with q1
+                # its derivative by q1
                 rate_q1_for_q3 = (
                     2.0
                     *(
@@ -369,13 +371,13 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_turn_q1_for_q3() -> Reals:
-                    turn_q1_for_q3 = 1.0  # to the boundary of the later step
+                    turn_q1_for_q3 = 1.0  # turn of q1 to the bound, to first order
                     return (turn_q1_for_q3,)
 
                 excess_q1_for_q3 = select(
                     value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3,
                 )
-                turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
+                turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # turn of q1 to the bound, to first order
                 (turn_q1_for_q3,) = elsewhere(
                     absolute(rate_q1_for_q3) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3,),
@@ -383,7 +385,7 @@ class ArrayPrograms(Programs):
                     (),
                 )
                 turn_q1_for_q3_squared = turn_q1_for_q3*turn_q1_for_q3
-                # whether it follows q6
+                # whether the first order is not enough: then q6 is chosen first
                 follows_q1_for_q3 = (
                     (turn_q1_for_q3_squared > 1e-12)
                     | (
@@ -404,7 +406,7 @@ class ArrayPrograms(Programs):
                     turned_sin_q1_for_q3 = (
                         one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
                     )
-                    # what is left of its own equation
+                    # residual of the equation of q1
                     turned_cost_q1_for_q3 = absolute(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
                     best_cost_q1_for_q3 = turned_cost_q1_for_q3
                     turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
@@ -420,7 +422,7 @@ class ArrayPrograms(Programs):
                 swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3 + along_q6_q1_for_q3*along_q6_q1_for_q3)
 
                 def elsewhere_highest_q6_q1_for_q3() -> Reals:
-                    highest_q6_q1_for_q3 = 1.0  # the arc: cosines from its centre
+                    highest_q6_q1_for_q3 = 1.0  # feasible arc: cosines of its ends
                     lowest_q6_q1_for_q3 = -1.0
                     return (highest_q6_q1_for_q3, lowest_q6_q1_for_q3)
 
@@ -428,7 +430,7 @@ class ArrayPrograms(Programs):
                     value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3 - along_q6_q1_for_q3*cos_q6_before_q1_for_q3
                 )
                 part_of_highest_q6_q1_for_q3_2 = (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 highest_q6_q1_for_q3 = select(
                     part_of_highest_q6_q1_for_q3_2 > 1.0,
                     1.0,
@@ -469,23 +471,24 @@ class ArrayPrograms(Programs):
                 near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
 
                 def elsewhere_near_cos_q1_for_q3(cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real) -> Reals:
-                    near_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows
-                    near_sin_q1_for_q3 = sin_q1_before_q1_for_q3  # it stays where every angle gives this one
+                    near_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows the later one
+                    near_sin_q1_for_q3 = sin_q1_before_q1_for_q3  # it stays where every angle gives this later one
                     return (near_cos_q1_for_q3, near_sin_q1_for_q3)
 
                 near_along_q1_for_q3 = (
                     sigma_wrist*(near_cos_q6_q1_for_q3*r21 - near_sin_q6_q1_for_q3*r22)*near_q_q1_for_q3
                     - (near_sin_q6_q1_for_q3*r12 - near_cos_q6_q1_for_q3*r11)*sigma_wrist*near_p_q1_for_q3
                 )
-                # of two opposite ways
+                # positive where the vector points along the later angle
                 near_towards_q1_for_q3 = select(
                     absolute(near_along_q1_for_q3) <= 5e-12*near_radius_q1_for_q3,
                     near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3, near_along_q1_for_q3,
                 )
                 near_side_q1_for_q3 = select(near_towards_q1_for_q3 < 0.0, -1.0, 1.0)
                 part_of_near_cos_q1_for_q3 = near_side_q1_for_q3/near_radius_q1_for_q3
-                near_cos_q1_for_q3 = -near_q_q1_for_q3*part_of_near_cos_q1_for_q3  # the earlier angle follows
-                near_sin_q1_for_q3 = near_p_q1_for_q3*part_of_near_cos_q1_for_q3  # it stays where every angle gives this one
+                near_cos_q1_for_q3 = -near_q_q1_for_q3*part_of_near_cos_q1_for_q3  # the earlier angle follows the later one
+                # it stays where every angle gives this later one
+                near_sin_q1_for_q3 = near_p_q1_for_q3*part_of_near_cos_q1_for_q3
                 near_cos_q1_for_q3, near_sin_q1_for_q3 = elsewhere(
                     near_radius_q1_for_q3 > 1e-12,
                     (near_cos_q1_for_q3, near_sin_q1_for_q3),
@@ -500,7 +503,7 @@ class ArrayPrograms(Programs):
                     return (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3)
 
                 near_cost_q1_for_q3 = absolute(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
-                mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
+                mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # mirror image: on the other arc
                 mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
                 mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
                 mirrored_q_q1_for_q3 = sigma_wrist*(mirrored_cos_q6_q1_for_q3*r12 + mirrored_sin_q6_q1_for_q3*r11)
@@ -510,15 +513,15 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_mirrored_cos_q1_for_q3(cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real) -> Reals:
-                    mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows
-                    mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3  # it stays where every angle gives this one
+                    mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows the later one
+                    mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3  # it stays where every angle gives this later one
                     return (mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3)
 
                 mirrored_along_q1_for_q3 = (
                     sigma_wrist*(mirrored_cos_q6_q1_for_q3*r21 - mirrored_sin_q6_q1_for_q3*r22)*mirrored_q_q1_for_q3
                     - (mirrored_sin_q6_q1_for_q3*r12 - mirrored_cos_q6_q1_for_q3*r11)*sigma_wrist*mirrored_p_q1_for_q3
                 )
-                # of two opposite ways
+                # positive where the vector points along the later angle
                 mirrored_towards_q1_for_q3 = select(
                     absolute(mirrored_along_q1_for_q3) <= 5e-12*mirrored_radius_q1_for_q3,
                     mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3,
@@ -526,8 +529,9 @@ class ArrayPrograms(Programs):
                 )
                 mirrored_side_q1_for_q3 = select(mirrored_towards_q1_for_q3 < 0.0, -1.0, 1.0)
                 part_of_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
-                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*part_of_mirrored_cos_q1_for_q3  # the earlier angle follows
-                # it stays where every angle gives this one
+                # the earlier angle follows the later one
+                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*part_of_mirrored_cos_q1_for_q3
+                # it stays where every angle gives this later one
                 mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*part_of_mirrored_cos_q1_for_q3
                 mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3 = elsewhere(
                     mirrored_radius_q1_for_q3 > 1e-12,
@@ -578,14 +582,14 @@ class ArrayPrograms(Programs):
                 def elsewhere_ahead_q1(
                     best_ahead_q1_for_q3: Real, best_cos_q1_for_q3: Real, best_sin_q1_for_q3: Real,
                 ) -> Reals:
-                    ahead_q1 = best_ahead_q1_for_q3  # turned within rounding, where the rest can be reached
-                    cos_q1 = best_cos_q1_for_q3  # turned within rounding, where the rest can be reached
-                    sin_q1 = best_sin_q1_for_q3  # turned within rounding, where the rest can be reached
+                    ahead_q1 = best_ahead_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                    cos_q1 = best_cos_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                    sin_q1 = best_sin_q1_for_q3  # turned, within rounding, to where q3 has a solution
                     return (ahead_q1, cos_q1, sin_q1)
 
-                ahead_q1 = ahead_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-                cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-                sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+                ahead_q1 = ahead_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
                 ahead_q1, cos_q1, sin_q1 = elsewhere(
                     best_cost_q1_for_q3 > machine_scale_times_rounding,
                     (ahead_q1, cos_q1, sin_q1),
@@ -594,9 +598,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1, cos_q1, sin_q1)
 
-            ahead_q1 = ahead_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-            cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-            sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+            ahead_q1 = ahead_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+            cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+            sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
             ahead_q1, cos_q1, sin_q1 = elsewhere(
                 absolute(value_q1_for_q3) <= size_q1_for_q3,
                 (ahead_q1, cos_q1, sin_q1),
@@ -612,9 +616,9 @@ class ArrayPrograms(Programs):
             )
             return (ahead_q1, cos_q1, sin_q1)
 
-        ahead_q1 = ahead_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-        cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-        sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+        ahead_q1 = ahead_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+        cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+        sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
         ahead_q1, cos_q1, sin_q1 = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (ahead_q1, cos_q1, sin_q1),
@@ -625,10 +629,11 @@ class ArrayPrograms(Programs):
                 wrist_z,
             ),
         )
-        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
+        cos_q5 = r13*sin_q1 - r23*cos_q1  # cosine and sine of q5 from the q6 radius and r32 equations
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
-        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)
         q6_radius_of_q5 = sigma_wrist*radius_q6
         q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33
 
@@ -636,12 +641,12 @@ class ArrayPrograms(Programs):
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
-            cos_q6_before_q6_of_q3 = cos_of_free_a6  # its reference where it is free
+            cos_q6_before_q6_of_q3 = cos_of_free_a6  # in the singularity: the angle of the reference
             sin_q6_before_q6_of_q3 = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3)
 
-        along_q6 = -sigma_wrist*r21_from_q1  # q6: polar angle in the r31 and r32 equations
-        cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
+        along_q6 = -sigma_wrist*r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
+        cos_q6_before_q6_of_q3 = along_q6/radius_q6  # in the singularity: the angle of the reference
         across_q6 = sigma_wrist*r22_from_q1
         sin_q6_before_q6_of_q3 = across_q6/radius_q6
         cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
@@ -657,7 +662,7 @@ class ArrayPrograms(Programs):
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
         r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
@@ -689,7 +694,7 @@ class ArrayPrograms(Programs):
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
 
                 def elsewhere_highest_q6_of_q3() -> Reals:
-                    highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3 = 1.0  # feasible arc: cosines of its ends
                     lowest_q6_of_q3 = -1.0
                     return (highest_q6_of_q3, lowest_q6_of_q3)
 
@@ -697,7 +702,7 @@ class ArrayPrograms(Programs):
                     value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
                 )
                 part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 highest_q6_of_q3 = select(
                     part_of_highest_q6_of_q3 > 1.0,
                     1.0,
@@ -731,7 +736,7 @@ class ArrayPrograms(Programs):
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
                 part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
                 part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(part_of_cost_q6_of_q3*part_of_cost_q6_of_q3 + part_of_cost_q6_of_q3_2*part_of_cost_q6_of_q3_2)
                     *radius_q6
@@ -739,12 +744,12 @@ class ArrayPrograms(Programs):
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11)
 
                 def elsewhere_cos_q6(cos_q6_after_q6_of_q3: Real, sin_q6_after_q6_of_q3: Real) -> Reals:
-                    cos_q6 = cos_q6_after_q6_of_q3  # kept where the rest can be reached
-                    sin_q6 = sin_q6_after_q6_of_q3  # kept where the rest can be reached
+                    cos_q6 = cos_q6_after_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
+                    sin_q6 = sin_q6_after_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
                     return (cos_q6, sin_q6)
 
-                cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
-                sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
+                cos_q6 = cos_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
+                sin_q6 = sin_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
                 cos_q6, sin_q6 = elsewhere(
                     stays_q6_of_q3,
                     (cos_q6, sin_q6),
@@ -753,8 +758,8 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6, sin_q6)
 
-            cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
-            sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
+            cos_q6 = cos_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
+            sin_q6 = sin_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
             cos_q6, sin_q6 = elsewhere(
                 (radius_q6 > 0.1) & (size_of_value_q6_of_q3 > part_of_cos_q6),
                 (cos_q6, sin_q6),
@@ -766,8 +771,8 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6, sin_q6)
 
-        cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
-        sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
+        cos_q6 = cos_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
+        sin_q6 = sin_q6_before_q6_of_q3  # moved to where q3 has a solution, if that changes the pose by rounding only
         cos_q6, sin_q6 = elsewhere(
             size_of_value_q6_of_q3 <= size_q1_for_q3,
             (cos_q6, sin_q6),
@@ -779,33 +784,37 @@ class ArrayPrograms(Programs):
         )
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5_times_r33
-        wrist_x_from_q1 = ahead_q1 - d5*r21_from_q1_before_q56  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = ahead_q1 - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         # q3: out of reach
         require(status, sine_square_q3 >= -scale_q3_squared_times_rounding, Status.UNREACHABLE)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = select(absolute(both_q3) > 0.0, both_q3, 1.0)
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        sin_q3 = 2.0*root(sine_square_q3)*sigma_elbow/absolute(sum_q3)
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = select(absolute(sum_of_cos_q3) > 0.0, sum_of_cos_q3, 1.0)
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sin_q3 = 2.0*root(sine_square_q3)*sigma_elbow/absolute(divisor_of_cos_q3)
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
             return (direction_x_q2, direction_y_q2)
 
         arm_along_q2 = a2 + a3*cos_q3
         arm_across_q2 = a3*sin_q3
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
         direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         direction_x_q2, direction_y_q2 = elsewhere(
@@ -815,24 +824,24 @@ class ArrayPrograms(Programs):
             (ref_a2,),
         )
         angle_q2 = atan2(direction_y_q2, direction_x_q2)
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(offset_a2 + angle_q2/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + angle_q2/DEGREE, near_a2)  # A2: whole turns added
         angle_q3 = atan2(sin_q3, cos_q3)
-        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(offset_a3 + angle_q3/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + angle_q3/DEGREE, near_a3)  # A3: whole turns added
         angle_with_q4 = atan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4 = nearest_period(offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)/DEGREE, near_a4)
-        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
         near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        axis_a5 = nearest_period(offset_a5 + degrees(q6_radius_of_q5, cos_q5), near_a5)  # A5: its turn
-        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        axis_a5 = nearest_period(offset_a5 + degrees(q6_radius_of_q5, cos_q5), near_a5)  # A5: whole turns added
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
         near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
-        axis_a6 = nearest_period(offset_a6 + degrees(sin_q6, cos_q6), near_a6)  # A6: its turn
+        axis_a6 = nearest_period(offset_a6 + degrees(sin_q6, cos_q6), near_a6)  # A6: whole turns added
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -915,7 +924,7 @@ class ArrayPrograms(Programs):
         size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
         twice_d5 = k.twice_d5
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -925,31 +934,34 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)
         distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3_right = root(ahead_squared_q1)
 
         def elsewhere_cos_q1_before_q1_for_q3_left(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3_left = cos(free_a1)  # its reference where it is free
+            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            cos_q1_before_q1_for_q3_left = cos(free_a1)
             sin_q1_before_q1_for_q3_left = sin(free_a1)
-            cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left  # its reference where it is free
+            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
             return (
                 cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
                 sin_q1_before_q1_for_q3_right,
             )
 
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3_left = (d4*wrist_x - ahead_q1_before_q1_for_q3_right*wrist_y)/distance_q1_squared
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_y + d4*wrist_x)/distance_q1_squared
         found = elsewhere(
@@ -1106,7 +1118,7 @@ class ArrayPrograms(Programs):
             wrist_y_from_q1_before_q1_for_q3_left_down = (
                 wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_left_down
             )
-            # a later step needs this of q1: no larger in size than
+            # q3 has solutions where this is within its bound
             value_q1_for_q3_left_down = (
                 wrist_x_from_q1_before_q1_for_q3_left_down*wrist_x_from_q1_before_q1_for_q3_left_down
                 + wrist_y_from_q1_before_q1_for_q3_left_down*wrist_y_from_q1_before_q1_for_q3_left_down
@@ -1126,21 +1138,21 @@ class ArrayPrograms(Programs):
                 r32*cos_q6_rate_q1_for_q3_left_down + r31*sin_q6_rate_q1_for_q3_left_down
             )
             wrist_y_from_q1_rate_q1_for_q3_left_down = d5*r22_from_q1_before_q6_rate_q1_for_q3_left_down
-            # how it changes with q1
+            # its derivative by q1
             rate_q1_for_q3_left_down = (
                 2.0*wrist_x_from_q1_before_q1_for_q3_left_down*wrist_x_from_q1_rate_q1_for_q3_left_down
                 + 2.0*wrist_y_from_q1_before_q1_for_q3_left_down*wrist_y_from_q1_rate_q1_for_q3_left_down
             )
 
             def elsewhere_turn_q1_for_q3_left_down() -> Reals:
-                turn_q1_for_q3_left_down = 1.0  # to the boundary of the later step
+                turn_q1_for_q3_left_down = 1.0  # turn of q1 to the bound, to first order
                 return (turn_q1_for_q3_left_down,)
 
             excess_q1_for_q3_left_down = select(
                 value_q1_for_q3_left_down > 0.0, value_q1_for_q3_left_down - size_q1_for_q3,
                 size_q1_for_q3 + value_q1_for_q3_left_down,
             )
-            # to the boundary of the later step
+            # turn of q1 to the bound, to first order
             turn_q1_for_q3_left_down = -excess_q1_for_q3_left_down/rate_q1_for_q3_left_down
             (turn_q1_for_q3_left_down,) = elsewhere(
                 absolute(rate_q1_for_q3_left_down) > size_q1_for_q3_times_rounding,
@@ -1159,11 +1171,11 @@ class ArrayPrograms(Programs):
                 one_by_turned_length_q1_for_q3_left_down
                 *(sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left)
             )
-            # what is left of its own equation
+            # residual of the equation of q1
             turned_cost_q1_for_q3_left_down = absolute(
                 d4 + turned_cos_q1_for_q3_left_down*wrist_y - turned_sin_q1_for_q3_left_down*wrist_x
             )
-            # whether it follows q6
+            # whether the first order is not enough: then q6 is chosen first
             follows_q1_for_q3_left_down = (
                 (turn_q1_for_q3_squared_left_down > 1e-12)
                 | (
@@ -1198,7 +1210,7 @@ class ArrayPrograms(Programs):
             wrist_y_from_q1_before_q1_for_q3_left_up = (
                 wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_left_up
             )
-            # a later step needs this of q1: no larger in size than
+            # q3 has solutions where this is within its bound
             value_q1_for_q3_left_up = (
                 wrist_x_from_q1_before_q1_for_q3_left_up*wrist_x_from_q1_before_q1_for_q3_left_up
                 + wrist_y_from_q1_before_q1_for_q3_left_up*wrist_y_from_q1_before_q1_for_q3_left_up
@@ -1206,9 +1218,9 @@ class ArrayPrograms(Programs):
             )
 
             def elsewhere_highest_q6_q1_for_q3_left_down() -> Reals:
-                highest_q6_q1_for_q3_left_down = 1.0  # the arc: cosines from its centre
+                highest_q6_q1_for_q3_left_down = 1.0  # feasible arc: cosines of its ends
                 lowest_q6_q1_for_q3_left_down = -1.0
-                highest_q6_q1_for_q3_left_up = 1.0  # the arc: cosines from its centre
+                highest_q6_q1_for_q3_left_up = 1.0  # feasible arc: cosines of its ends
                 lowest_q6_q1_for_q3_left_up = -1.0
                 return (
                     highest_q6_q1_for_q3_left_down, lowest_q6_q1_for_q3_left_down, highest_q6_q1_for_q3_left_up,
@@ -1222,7 +1234,7 @@ class ArrayPrograms(Programs):
             part_of_highest_q6_q1_for_q3_2_left_down = (
                 (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_left_down)/swing_q6_q1_for_q3_left
             )
-            # the arc: cosines from its centre
+            # feasible arc: cosines of its ends
             highest_q6_q1_for_q3_left_down = select(
                 part_of_highest_q6_q1_for_q3_2_left_down > 1.0,
                 1.0,
@@ -1243,7 +1255,7 @@ class ArrayPrograms(Programs):
             part_of_highest_q6_q1_for_q3_2_left_up = (
                 (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_left_up)/swing_q6_q1_for_q3_left
             )
-            # the arc: cosines from its centre
+            # feasible arc: cosines of its ends
             highest_q6_q1_for_q3_left_up = select(
                 part_of_highest_q6_q1_for_q3_2_left_up > 1.0,
                 1.0,
@@ -1308,15 +1320,15 @@ class ArrayPrograms(Programs):
             def elsewhere_near_cos_q1_for_q3_left_down(
                 cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
             ) -> Reals:
-                near_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows
-                near_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                near_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows the later one
+                near_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this later one
                 return (near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down)
 
             near_along_q1_for_q3_left_down = (
                 (near_cos_q6_q1_for_q3_left_down*r21 - near_sin_q6_q1_for_q3_left_down*r22)*near_q_q1_for_q3_left_down
                 - (near_sin_q6_q1_for_q3_left_down*r12 - near_cos_q6_q1_for_q3_left_down*r11)*near_p_q1_for_q3_left_down
             )
-            # of two opposite ways
+            # positive where the vector points along the later angle
             near_towards_q1_for_q3_left_down = select(
                 absolute(near_along_q1_for_q3_left_down) <= 5e-12*near_radius_q1_for_q3_left_down,
                 (
@@ -1327,9 +1339,9 @@ class ArrayPrograms(Programs):
             )
             near_side_q1_for_q3_left_down = select(near_towards_q1_for_q3_left_down < 0.0, -1.0, 1.0)
             part_of_near_cos_q1_for_q3_left_down = near_side_q1_for_q3_left_down/near_radius_q1_for_q3_left_down
-            # the earlier angle follows
+            # the earlier angle follows the later one
             near_cos_q1_for_q3_left_down = -near_q_q1_for_q3_left_down*part_of_near_cos_q1_for_q3_left_down
-            # it stays where every angle gives this one
+            # it stays where every angle gives this later one
             near_sin_q1_for_q3_left_down = near_p_q1_for_q3_left_down*part_of_near_cos_q1_for_q3_left_down
             near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down = elsewhere(
                 near_radius_q1_for_q3_left_down > 1e-12,
@@ -1373,15 +1385,15 @@ class ArrayPrograms(Programs):
             def elsewhere_near_cos_q1_for_q3_left_up(
                 cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
             ) -> Reals:
-                near_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows
-                near_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                near_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows the later one
+                near_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this later one
                 return (near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up)
 
             near_along_q1_for_q3_left_up = (
                 (near_sin_q6_q1_for_q3_left_up*r12 - near_cos_q6_q1_for_q3_left_up*r11)*near_p_q1_for_q3_left_up
                 - (near_cos_q6_q1_for_q3_left_up*r21 - near_sin_q6_q1_for_q3_left_up*r22)*near_q_q1_for_q3_left_up
             )
-            # of two opposite ways
+            # positive where the vector points along the later angle
             near_towards_q1_for_q3_left_up = select(
                 absolute(near_along_q1_for_q3_left_up) <= 5e-12*near_radius_q1_for_q3_left_up,
                 (
@@ -1392,9 +1404,9 @@ class ArrayPrograms(Programs):
             )
             near_side_q1_for_q3_left_up = select(near_towards_q1_for_q3_left_up < 0.0, -1.0, 1.0)
             part_of_near_cos_q1_for_q3_left_up = near_side_q1_for_q3_left_up/near_radius_q1_for_q3_left_up
-            # the earlier angle follows
+            # the earlier angle follows the later one
             near_cos_q1_for_q3_left_up = -near_q_q1_for_q3_left_up*part_of_near_cos_q1_for_q3_left_up
-            # it stays where every angle gives this one
+            # it stays where every angle gives this later one
             near_sin_q1_for_q3_left_up = near_p_q1_for_q3_left_up*part_of_near_cos_q1_for_q3_left_up
             near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up = elsewhere(
                 near_radius_q1_for_q3_left_up > 1e-12,
@@ -1441,7 +1453,7 @@ class ArrayPrograms(Programs):
             wrist_y_from_q1_before_q1_for_q3_right_down = (
                 wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_right_down
             )
-            # a later step needs this of q1: no larger in size than
+            # q3 has solutions where this is within its bound
             value_q1_for_q3_right_down = (
                 wrist_x_from_q1_before_q1_for_q3_right_down*wrist_x_from_q1_before_q1_for_q3_right_down
                 + wrist_y_from_q1_before_q1_for_q3_right_down*wrist_y_from_q1_before_q1_for_q3_right_down
@@ -1475,7 +1487,7 @@ class ArrayPrograms(Programs):
             wrist_y_from_q1_before_q1_for_q3_right_up = (
                 wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_right_up
             )
-            # a later step needs this of q1: no larger in size than
+            # q3 has solutions where this is within its bound
             value_q1_for_q3_right_up = (
                 wrist_x_from_q1_before_q1_for_q3_right_up*wrist_x_from_q1_before_q1_for_q3_right_up
                 + wrist_y_from_q1_before_q1_for_q3_right_up*wrist_y_from_q1_before_q1_for_q3_right_up
@@ -1483,9 +1495,9 @@ class ArrayPrograms(Programs):
             )
 
             def elsewhere_highest_q6_q1_for_q3_right_down() -> Reals:
-                highest_q6_q1_for_q3_right_down = 1.0  # the arc: cosines from its centre
+                highest_q6_q1_for_q3_right_down = 1.0  # feasible arc: cosines of its ends
                 lowest_q6_q1_for_q3_right_down = -1.0
-                highest_q6_q1_for_q3_right_up = 1.0  # the arc: cosines from its centre
+                highest_q6_q1_for_q3_right_up = 1.0  # feasible arc: cosines of its ends
                 lowest_q6_q1_for_q3_right_up = -1.0
                 return (
                     highest_q6_q1_for_q3_right_down, lowest_q6_q1_for_q3_right_down, highest_q6_q1_for_q3_right_up,
@@ -1499,7 +1511,7 @@ class ArrayPrograms(Programs):
             part_of_highest_q6_q1_for_q3_2_right_down = (
                 (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_right_down)/swing_q6_q1_for_q3_right
             )
-            # the arc: cosines from its centre
+            # feasible arc: cosines of its ends
             highest_q6_q1_for_q3_right_down = select(
                 part_of_highest_q6_q1_for_q3_2_right_down > 1.0,
                 1.0,
@@ -1520,7 +1532,7 @@ class ArrayPrograms(Programs):
             part_of_highest_q6_q1_for_q3_2_right_up = (
                 (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_right_up)/swing_q6_q1_for_q3_right
             )
-            # the arc: cosines from its centre
+            # feasible arc: cosines of its ends
             highest_q6_q1_for_q3_right_up = select(
                 part_of_highest_q6_q1_for_q3_2_right_up > 1.0,
                 1.0,
@@ -1585,8 +1597,9 @@ class ArrayPrograms(Programs):
             def elsewhere_near_cos_q1_for_q3_right_down(
                 cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
             ) -> Reals:
-                near_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows
-                near_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                near_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows the later one
+                # it stays where every angle gives this later one
+                near_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right
                 return (near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down)
 
             near_along_q1_for_q3_right_down = (
@@ -1595,7 +1608,7 @@ class ArrayPrograms(Programs):
                     near_sin_q6_q1_for_q3_right_down*r12 - near_cos_q6_q1_for_q3_right_down*r11
                 )*near_p_q1_for_q3_right_down
             )
-            # of two opposite ways
+            # positive where the vector points along the later angle
             near_towards_q1_for_q3_right_down = select(
                 absolute(near_along_q1_for_q3_right_down) <= 5e-12*near_radius_q1_for_q3_right_down,
                 (
@@ -1606,9 +1619,9 @@ class ArrayPrograms(Programs):
             )
             near_side_q1_for_q3_right_down = select(near_towards_q1_for_q3_right_down < 0.0, -1.0, 1.0)
             part_of_near_cos_q1_for_q3_right_down = near_side_q1_for_q3_right_down/near_radius_q1_for_q3_right_down
-            # the earlier angle follows
+            # the earlier angle follows the later one
             near_cos_q1_for_q3_right_down = -near_q_q1_for_q3_right_down*part_of_near_cos_q1_for_q3_right_down
-            # it stays where every angle gives this one
+            # it stays where every angle gives this later one
             near_sin_q1_for_q3_right_down = near_p_q1_for_q3_right_down*part_of_near_cos_q1_for_q3_right_down
             near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down = elsewhere(
                 near_radius_q1_for_q3_right_down > 1e-12,
@@ -1652,15 +1665,15 @@ class ArrayPrograms(Programs):
             def elsewhere_near_cos_q1_for_q3_right_up(
                 cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
             ) -> Reals:
-                near_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows
-                near_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                near_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows the later one
+                near_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this later one
                 return (near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up)
 
             near_along_q1_for_q3_right_up = (
                 (near_sin_q6_q1_for_q3_right_up*r12 - near_cos_q6_q1_for_q3_right_up*r11)*near_p_q1_for_q3_right_up
                 - (near_cos_q6_q1_for_q3_right_up*r21 - near_sin_q6_q1_for_q3_right_up*r22)*near_q_q1_for_q3_right_up
             )
-            # of two opposite ways
+            # positive where the vector points along the later angle
             near_towards_q1_for_q3_right_up = select(
                 absolute(near_along_q1_for_q3_right_up) <= 5e-12*near_radius_q1_for_q3_right_up,
                 (
@@ -1671,9 +1684,9 @@ class ArrayPrograms(Programs):
             )
             near_side_q1_for_q3_right_up = select(near_towards_q1_for_q3_right_up < 0.0, -1.0, 1.0)
             part_of_near_cos_q1_for_q3_right_up = near_side_q1_for_q3_right_up/near_radius_q1_for_q3_right_up
-            # the earlier angle follows
+            # the earlier angle follows the later one
             near_cos_q1_for_q3_right_up = -near_q_q1_for_q3_right_up*part_of_near_cos_q1_for_q3_right_up
-            # it stays where every angle gives this one
+            # it stays where every angle gives this later one
             near_sin_q1_for_q3_right_up = near_p_q1_for_q3_right_up*part_of_near_cos_q1_for_q3_right_up
             near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up = elsewhere(
                 near_radius_q1_for_q3_right_up > 1e-12,
@@ -1709,7 +1722,7 @@ class ArrayPrograms(Programs):
             near_cost_q1_for_q3_left_down = absolute(
                 d4 + near_cos_q1_for_q3_left_down*wrist_y - near_sin_q1_for_q3_left_down*wrist_x
             )
-            # the other way to the arc
+            # mirror image: on the other arc
             mirrored_q6_q1_for_q3_left_down = 2.0*centre_q6_q1_for_q3_left - moved_q6_q1_for_q3_left_down
             mirrored_cos_q6_q1_for_q3_left_down = cos(mirrored_q6_q1_for_q3_left_down)
             mirrored_sin_q6_q1_for_q3_left_down = sin(mirrored_q6_q1_for_q3_left_down)
@@ -1727,8 +1740,9 @@ class ArrayPrograms(Programs):
             def elsewhere_mirrored_cos_q1_for_q3_left_down(
                 cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
             ) -> Reals:
-                mirrored_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows
-                mirrored_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                mirrored_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows the later one
+                # it stays where every angle gives this later one
+                mirrored_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left
                 return (mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down)
 
             mirrored_along_q1_for_q3_left_down = (
@@ -1739,7 +1753,7 @@ class ArrayPrograms(Programs):
                     mirrored_sin_q6_q1_for_q3_left_down*r12 - mirrored_cos_q6_q1_for_q3_left_down*r11
                 )*mirrored_p_q1_for_q3_left_down
             )
-            # of two opposite ways
+            # positive where the vector points along the later angle
             mirrored_towards_q1_for_q3_left_down = select(
                 absolute(mirrored_along_q1_for_q3_left_down) <= 5e-12*mirrored_radius_q1_for_q3_left_down,
                 (
@@ -1752,9 +1766,9 @@ class ArrayPrograms(Programs):
             part_of_mirrored_cos_q1_for_q3_left_down = (
                 mirrored_side_q1_for_q3_left_down/mirrored_radius_q1_for_q3_left_down
             )
-            # the earlier angle follows
+            # the earlier angle follows the later one
             mirrored_cos_q1_for_q3_left_down = -mirrored_q_q1_for_q3_left_down*part_of_mirrored_cos_q1_for_q3_left_down
-            # it stays where every angle gives this one
+            # it stays where every angle gives this later one
             mirrored_sin_q1_for_q3_left_down = mirrored_p_q1_for_q3_left_down*part_of_mirrored_cos_q1_for_q3_left_down
             mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down = elsewhere(
                 mirrored_radius_q1_for_q3_left_down > 1e-12,
@@ -1787,7 +1801,7 @@ class ArrayPrograms(Programs):
             near_cost_q1_for_q3_left_up = absolute(
                 d4 + near_cos_q1_for_q3_left_up*wrist_y - near_sin_q1_for_q3_left_up*wrist_x
             )
-            # the other way to the arc
+            # mirror image: on the other arc
             mirrored_q6_q1_for_q3_left_up = 2.0*centre_q6_q1_for_q3_left - moved_q6_q1_for_q3_left_up
             mirrored_cos_q6_q1_for_q3_left_up = cos(mirrored_q6_q1_for_q3_left_up)
             mirrored_sin_q6_q1_for_q3_left_up = sin(mirrored_q6_q1_for_q3_left_up)
@@ -1801,8 +1815,9 @@ class ArrayPrograms(Programs):
             def elsewhere_mirrored_cos_q1_for_q3_left_up(
                 cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
             ) -> Reals:
-                mirrored_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows
-                mirrored_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                mirrored_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows the later one
+                # it stays where every angle gives this later one
+                mirrored_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left
                 return (mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up)
 
             mirrored_along_q1_for_q3_left_up = (
@@ -1813,7 +1828,7 @@ class ArrayPrograms(Programs):
                     mirrored_cos_q6_q1_for_q3_left_up*r21 - mirrored_sin_q6_q1_for_q3_left_up*r22
                 )*mirrored_q_q1_for_q3_left_up
             )
-            # of two opposite ways
+            # positive where the vector points along the later angle
             mirrored_towards_q1_for_q3_left_up = select(
                 absolute(mirrored_along_q1_for_q3_left_up) <= 5e-12*mirrored_radius_q1_for_q3_left_up,
                 (
@@ -1824,9 +1839,9 @@ class ArrayPrograms(Programs):
             )
             mirrored_side_q1_for_q3_left_up = select(mirrored_towards_q1_for_q3_left_up < 0.0, -1.0, 1.0)
             part_of_mirrored_cos_q1_for_q3_left_up = mirrored_side_q1_for_q3_left_up/mirrored_radius_q1_for_q3_left_up
-            # the earlier angle follows
+            # the earlier angle follows the later one
             mirrored_cos_q1_for_q3_left_up = -mirrored_q_q1_for_q3_left_up*part_of_mirrored_cos_q1_for_q3_left_up
-            # it stays where every angle gives this one
+            # it stays where every angle gives this later one
             mirrored_sin_q1_for_q3_left_up = mirrored_p_q1_for_q3_left_up*part_of_mirrored_cos_q1_for_q3_left_up
             mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up = elsewhere(
                 mirrored_radius_q1_for_q3_left_up > 1e-12,
@@ -1859,7 +1874,7 @@ class ArrayPrograms(Programs):
             near_cost_q1_for_q3_right_down = absolute(
                 d4 + near_cos_q1_for_q3_right_down*wrist_y - near_sin_q1_for_q3_right_down*wrist_x
             )
-            # the other way to the arc
+            # mirror image: on the other arc
             mirrored_q6_q1_for_q3_right_down = 2.0*centre_q6_q1_for_q3_right - moved_q6_q1_for_q3_right_down
             mirrored_cos_q6_q1_for_q3_right_down = cos(mirrored_q6_q1_for_q3_right_down)
             mirrored_sin_q6_q1_for_q3_right_down = sin(mirrored_q6_q1_for_q3_right_down)
@@ -1877,8 +1892,9 @@ class ArrayPrograms(Programs):
             def elsewhere_mirrored_cos_q1_for_q3_right_down(
                 cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
             ) -> Reals:
-                mirrored_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows
-                mirrored_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                mirrored_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows the later one
+                # it stays where every angle gives this later one
+                mirrored_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right
                 return (mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down)
 
             mirrored_along_q1_for_q3_right_down = (
@@ -1889,7 +1905,7 @@ class ArrayPrograms(Programs):
                     mirrored_sin_q6_q1_for_q3_right_down*r12 - mirrored_cos_q6_q1_for_q3_right_down*r11
                 )*mirrored_p_q1_for_q3_right_down
             )
-            # of two opposite ways
+            # positive where the vector points along the later angle
             mirrored_towards_q1_for_q3_right_down = select(
                 absolute(mirrored_along_q1_for_q3_right_down) <= 5e-12*mirrored_radius_q1_for_q3_right_down,
                 (
@@ -1902,9 +1918,9 @@ class ArrayPrograms(Programs):
             part_of_mirrored_cos_q1_for_q3_right_down = (
                 mirrored_side_q1_for_q3_right_down/mirrored_radius_q1_for_q3_right_down
             )
-            # the earlier angle follows
+            # the earlier angle follows the later one
             mirrored_cos_q1_for_q3_right_down = -mirrored_q_q1_for_q3_right_down*part_of_mirrored_cos_q1_for_q3_right_down
-            # it stays where every angle gives this one
+            # it stays where every angle gives this later one
             mirrored_sin_q1_for_q3_right_down = mirrored_p_q1_for_q3_right_down*part_of_mirrored_cos_q1_for_q3_right_down
             mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down = elsewhere(
                 mirrored_radius_q1_for_q3_right_down > 1e-12,
@@ -1940,7 +1956,7 @@ class ArrayPrograms(Programs):
             near_cost_q1_for_q3_right_up = absolute(
                 d4 + near_cos_q1_for_q3_right_up*wrist_y - near_sin_q1_for_q3_right_up*wrist_x
             )
-            # the other way to the arc
+            # mirror image: on the other arc
             mirrored_q6_q1_for_q3_right_up = 2.0*centre_q6_q1_for_q3_right - moved_q6_q1_for_q3_right_up
             mirrored_cos_q6_q1_for_q3_right_up = cos(mirrored_q6_q1_for_q3_right_up)
             mirrored_sin_q6_q1_for_q3_right_up = sin(mirrored_q6_q1_for_q3_right_up)
@@ -1958,8 +1974,9 @@ class ArrayPrograms(Programs):
             def elsewhere_mirrored_cos_q1_for_q3_right_up(
                 cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
             ) -> Reals:
-                mirrored_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows
-                mirrored_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                mirrored_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows the later one
+                # it stays where every angle gives this later one
+                mirrored_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right
                 return (mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up)
 
             mirrored_along_q1_for_q3_right_up = (
@@ -1970,7 +1987,7 @@ class ArrayPrograms(Programs):
                     mirrored_cos_q6_q1_for_q3_right_up*r21 - mirrored_sin_q6_q1_for_q3_right_up*r22
                 )*mirrored_q_q1_for_q3_right_up
             )
-            # of two opposite ways
+            # positive where the vector points along the later angle
             mirrored_towards_q1_for_q3_right_up = select(
                 absolute(mirrored_along_q1_for_q3_right_up) <= 5e-12*mirrored_radius_q1_for_q3_right_up,
                 (
@@ -1981,9 +1998,9 @@ class ArrayPrograms(Programs):
             )
             mirrored_side_q1_for_q3_right_up = select(mirrored_towards_q1_for_q3_right_up < 0.0, -1.0, 1.0)
             part_of_mirrored_cos_q1_for_q3_right_up = mirrored_side_q1_for_q3_right_up/mirrored_radius_q1_for_q3_right_up
-            # the earlier angle follows
+            # the earlier angle follows the later one
             mirrored_cos_q1_for_q3_right_up = -mirrored_q_q1_for_q3_right_up*part_of_mirrored_cos_q1_for_q3_right_up
-            # it stays where every angle gives this one
+            # it stays where every angle gives this later one
             mirrored_sin_q1_for_q3_right_up = mirrored_p_q1_for_q3_right_up*part_of_mirrored_cos_q1_for_q3_right_up
             mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up = elsewhere(
                 mirrored_radius_q1_for_q3_right_up > 1e-12,
@@ -2090,14 +2107,14 @@ class ArrayPrograms(Programs):
                     best_ahead_q1_for_q3_left_down: Real, best_cos_q1_for_q3_left_down: Real,
                     best_sin_q1_for_q3_left_down: Real,
                 ) -> Reals:
-                    ahead_q1_left_down = best_ahead_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
-                    cos_q1_left_down = best_cos_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
-                    sin_q1_left_down = best_sin_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
+                    ahead_q1_left_down = best_ahead_q1_for_q3_left_down  # turned, within rounding, to where q3 has a solution
+                    cos_q1_left_down = best_cos_q1_for_q3_left_down  # turned, within rounding, to where q3 has a solution
+                    sin_q1_left_down = best_sin_q1_for_q3_left_down  # turned, within rounding, to where q3 has a solution
                     return (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down)
 
-                ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-                cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
-                sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+                ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+                cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+                sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
                 ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down = elsewhere(
                     best_cost_q1_for_q3_left_down > machine_scale_times_rounding,
                     (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down),
@@ -2106,9 +2123,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down)
 
-            ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-            cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
-            sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+            ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+            cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+            sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
             ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down = elsewhere(
                 absolute(value_q1_for_q3_left_down) <= size_q1_for_q3,
                 (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down),
@@ -2146,21 +2163,22 @@ class ArrayPrograms(Programs):
                     r32*cos_q6_rate_q1_for_q3_left_up + r31*sin_q6_rate_q1_for_q3_left_up
                 )
                 wrist_y_from_q1_rate_q1_for_q3_left_up = d5*r22_from_q1_before_q6_rate_q1_for_q3_left_up
-                # how it changes with q1
+                # its derivative by q1
                 rate_q1_for_q3_left_up = (
                     2.0*wrist_x_from_q1_before_q1_for_q3_left_up*wrist_x_from_q1_rate_q1_for_q3_left_up
                     + 2.0*wrist_y_from_q1_before_q1_for_q3_left_up*wrist_y_from_q1_rate_q1_for_q3_left_up
                 )
 
                 def elsewhere_turn_q1_for_q3_left_up() -> Reals:
-                    turn_q1_for_q3_left_up = 1.0  # to the boundary of the later step
+                    turn_q1_for_q3_left_up = 1.0  # turn of q1 to the bound, to first order
                     return (turn_q1_for_q3_left_up,)
 
                 excess_q1_for_q3_left_up = select(
                     value_q1_for_q3_left_up > 0.0, value_q1_for_q3_left_up - size_q1_for_q3,
                     size_q1_for_q3 + value_q1_for_q3_left_up,
                 )
-                turn_q1_for_q3_left_up = -excess_q1_for_q3_left_up/rate_q1_for_q3_left_up  # to the boundary of the later step
+                # turn of q1 to the bound, to first order
+                turn_q1_for_q3_left_up = -excess_q1_for_q3_left_up/rate_q1_for_q3_left_up
                 (turn_q1_for_q3_left_up,) = elsewhere(
                     absolute(rate_q1_for_q3_left_up) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_left_up,),
@@ -2168,7 +2186,7 @@ class ArrayPrograms(Programs):
                     (),
                 )
                 turn_q1_for_q3_squared_left_up = turn_q1_for_q3_left_up*turn_q1_for_q3_left_up
-                # whether it follows q6
+                # whether the first order is not enough: then q6 is chosen first
                 follows_q1_for_q3_left_up = (
                     (turn_q1_for_q3_squared_left_up > 1e-12)
                     | (
@@ -2196,7 +2214,7 @@ class ArrayPrograms(Programs):
                         one_by_turned_length_q1_for_q3_left_up
                         *(sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left)
                     )
-                    # what is left of its own equation
+                    # residual of the equation of q1
                     turned_cost_q1_for_q3_left_up = absolute(
                         d4 + turned_cos_q1_for_q3_left_up*wrist_y - turned_sin_q1_for_q3_left_up*wrist_x
                     )
@@ -2238,14 +2256,14 @@ class ArrayPrograms(Programs):
                 def elsewhere_ahead_q1_left_up(
                     best_ahead_q1_for_q3_left_up: Real, best_cos_q1_for_q3_left_up: Real, best_sin_q1_for_q3_left_up: Real,
                 ) -> Reals:
-                    ahead_q1_left_up = best_ahead_q1_for_q3_left_up  # turned within rounding, where the rest can be reached
-                    cos_q1_left_up = best_cos_q1_for_q3_left_up  # turned within rounding, where the rest can be reached
-                    sin_q1_left_up = best_sin_q1_for_q3_left_up  # turned within rounding, where the rest can be reached
+                    ahead_q1_left_up = best_ahead_q1_for_q3_left_up  # turned, within rounding, to where q3 has a solution
+                    cos_q1_left_up = best_cos_q1_for_q3_left_up  # turned, within rounding, to where q3 has a solution
+                    sin_q1_left_up = best_sin_q1_for_q3_left_up  # turned, within rounding, to where q3 has a solution
                     return (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up)
 
-                ahead_q1_left_up = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-                cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
-                sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+                ahead_q1_left_up = -ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+                cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+                sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
                 ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up = elsewhere(
                     best_cost_q1_for_q3_left_up > machine_scale_times_rounding,
                     (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up),
@@ -2254,9 +2272,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up)
 
-            ahead_q1_left_up = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-            cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
-            sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+            ahead_q1_left_up = -ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+            cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+            sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
             ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up = elsewhere(
                 absolute(value_q1_for_q3_left_up) <= size_q1_for_q3,
                 (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up),
@@ -2384,21 +2402,21 @@ class ArrayPrograms(Programs):
                     r32*cos_q6_rate_q1_for_q3_right_down + r31*sin_q6_rate_q1_for_q3_right_down
                 )
                 wrist_y_from_q1_rate_q1_for_q3_right_down = d5*r22_from_q1_before_q6_rate_q1_for_q3_right_down
-                # how it changes with q1
+                # its derivative by q1
                 rate_q1_for_q3_right_down = (
                     2.0*wrist_x_from_q1_before_q1_for_q3_right_down*wrist_x_from_q1_rate_q1_for_q3_right_down
                     + 2.0*wrist_y_from_q1_before_q1_for_q3_right_down*wrist_y_from_q1_rate_q1_for_q3_right_down
                 )
 
                 def elsewhere_turn_q1_for_q3_right_down() -> Reals:
-                    turn_q1_for_q3_right_down = 1.0  # to the boundary of the later step
+                    turn_q1_for_q3_right_down = 1.0  # turn of q1 to the bound, to first order
                     return (turn_q1_for_q3_right_down,)
 
                 excess_q1_for_q3_right_down = select(
                     value_q1_for_q3_right_down > 0.0, value_q1_for_q3_right_down - size_q1_for_q3,
                     size_q1_for_q3 + value_q1_for_q3_right_down,
                 )
-                # to the boundary of the later step
+                # turn of q1 to the bound, to first order
                 turn_q1_for_q3_right_down = -excess_q1_for_q3_right_down/rate_q1_for_q3_right_down
                 (turn_q1_for_q3_right_down,) = elsewhere(
                     absolute(rate_q1_for_q3_right_down) > size_q1_for_q3_times_rounding,
@@ -2407,7 +2425,7 @@ class ArrayPrograms(Programs):
                     (),
                 )
                 turn_q1_for_q3_squared_right_down = turn_q1_for_q3_right_down*turn_q1_for_q3_right_down
-                # whether it follows q6
+                # whether the first order is not enough: then q6 is chosen first
                 follows_q1_for_q3_right_down = (
                     (turn_q1_for_q3_squared_right_down > 1e-12)
                     | (
@@ -2435,7 +2453,7 @@ class ArrayPrograms(Programs):
                         one_by_turned_length_q1_for_q3_right_down
                         *(sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right)
                     )
-                    # what is left of its own equation
+                    # residual of the equation of q1
                     turned_cost_q1_for_q3_right_down = absolute(
                         d4 + turned_cos_q1_for_q3_right_down*wrist_y - turned_sin_q1_for_q3_right_down*wrist_x
                     )
@@ -2479,14 +2497,14 @@ class ArrayPrograms(Programs):
                     best_ahead_q1_for_q3_right_down: Real, best_cos_q1_for_q3_right_down: Real,
                     best_sin_q1_for_q3_right_down: Real,
                 ) -> Reals:
-                    ahead_q1_right_down = best_ahead_q1_for_q3_right_down  # turned within rounding, where the rest can be reached
-                    cos_q1_right_down = best_cos_q1_for_q3_right_down  # turned within rounding, where the rest can be reached
-                    sin_q1_right_down = best_sin_q1_for_q3_right_down  # turned within rounding, where the rest can be reached
+                    ahead_q1_right_down = best_ahead_q1_for_q3_right_down  # turned, within rounding, to where q3 has a solution
+                    cos_q1_right_down = best_cos_q1_for_q3_right_down  # turned, within rounding, to where q3 has a solution
+                    sin_q1_right_down = best_sin_q1_for_q3_right_down  # turned, within rounding, to where q3 has a solution
                     return (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down)
 
-                ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-                cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-                sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+                cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+                sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
                 ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down = elsewhere(
                     best_cost_q1_for_q3_right_down > machine_scale_times_rounding,
                     (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down),
@@ -2495,9 +2513,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down)
 
-            ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-            cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-            sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+            cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+            sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
             ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down = elsewhere(
                 absolute(value_q1_for_q3_right_down) <= size_q1_for_q3,
                 (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down),
@@ -2538,21 +2556,21 @@ class ArrayPrograms(Programs):
                     r32*cos_q6_rate_q1_for_q3_right_up + r31*sin_q6_rate_q1_for_q3_right_up
                 )
                 wrist_y_from_q1_rate_q1_for_q3_right_up = d5*r22_from_q1_before_q6_rate_q1_for_q3_right_up
-                # how it changes with q1
+                # its derivative by q1
                 rate_q1_for_q3_right_up = (
                     2.0*wrist_x_from_q1_before_q1_for_q3_right_up*wrist_x_from_q1_rate_q1_for_q3_right_up
                     + 2.0*wrist_y_from_q1_before_q1_for_q3_right_up*wrist_y_from_q1_rate_q1_for_q3_right_up
                 )
 
                 def elsewhere_turn_q1_for_q3_right_up() -> Reals:
-                    turn_q1_for_q3_right_up = 1.0  # to the boundary of the later step
+                    turn_q1_for_q3_right_up = 1.0  # turn of q1 to the bound, to first order
                     return (turn_q1_for_q3_right_up,)
 
                 excess_q1_for_q3_right_up = select(
                     value_q1_for_q3_right_up > 0.0, value_q1_for_q3_right_up - size_q1_for_q3,
                     size_q1_for_q3 + value_q1_for_q3_right_up,
                 )
-                # to the boundary of the later step
+                # turn of q1 to the bound, to first order
                 turn_q1_for_q3_right_up = -excess_q1_for_q3_right_up/rate_q1_for_q3_right_up
                 (turn_q1_for_q3_right_up,) = elsewhere(
                     absolute(rate_q1_for_q3_right_up) > size_q1_for_q3_times_rounding,
@@ -2561,7 +2579,7 @@ class ArrayPrograms(Programs):
                     (),
                 )
                 turn_q1_for_q3_squared_right_up = turn_q1_for_q3_right_up*turn_q1_for_q3_right_up
-                # whether it follows q6
+                # whether the first order is not enough: then q6 is chosen first
                 follows_q1_for_q3_right_up = (
                     (turn_q1_for_q3_squared_right_up > 1e-12)
                     | (
@@ -2589,7 +2607,7 @@ class ArrayPrograms(Programs):
                         one_by_turned_length_q1_for_q3_right_up
                         *(sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right)
                     )
-                    # what is left of its own equation
+                    # residual of the equation of q1
                     turned_cost_q1_for_q3_right_up = absolute(
                         d4 + turned_cos_q1_for_q3_right_up*wrist_y - turned_sin_q1_for_q3_right_up*wrist_x
                     )
@@ -2630,14 +2648,14 @@ class ArrayPrograms(Programs):
                 def elsewhere_ahead_q1_right_up(
                     best_ahead_q1_for_q3_right_up: Real, best_cos_q1_for_q3_right_up: Real, best_sin_q1_for_q3_right_up: Real,
                 ) -> Reals:
-                    ahead_q1_right_up = best_ahead_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
-                    cos_q1_right_up = best_cos_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
-                    sin_q1_right_up = best_sin_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
+                    ahead_q1_right_up = best_ahead_q1_for_q3_right_up  # turned, within rounding, to where q3 has a solution
+                    cos_q1_right_up = best_cos_q1_for_q3_right_up  # turned, within rounding, to where q3 has a solution
+                    sin_q1_right_up = best_sin_q1_for_q3_right_up  # turned, within rounding, to where q3 has a solution
                     return (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up)
 
-                ahead_q1_right_up = ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-                cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-                sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                ahead_q1_right_up = ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+                cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+                sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
                 ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up = elsewhere(
                     best_cost_q1_for_q3_right_up > machine_scale_times_rounding,
                     (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up),
@@ -2646,9 +2664,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up)
 
-            ahead_q1_right_up = ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-            cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-            sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            ahead_q1_right_up = ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+            cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+            sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
             ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up = elsewhere(
                 absolute(value_q1_for_q3_right_up) <= size_q1_for_q3,
                 (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up),
@@ -2669,18 +2687,18 @@ class ArrayPrograms(Programs):
                 sin_q1_right_up,
             )
 
-        ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-        cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
-        sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
-        ahead_q1_left_up = ahead_q1_left_down  # turned within rounding, where the rest can be reached
-        cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
-        sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
-        ahead_q1_right_down = -ahead_q1_left_down  # turned within rounding, where the rest can be reached
-        cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-        sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-        ahead_q1_right_up = -ahead_q1_left_down  # turned within rounding, where the rest can be reached
-        cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-        sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+        ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+        cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+        sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+        ahead_q1_left_up = ahead_q1_left_down  # turned, within rounding, to where q3 has a solution
+        cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+        sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned, within rounding, to where q3 has a solution
+        ahead_q1_right_down = -ahead_q1_left_down  # turned, within rounding, to where q3 has a solution
+        cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+        sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+        ahead_q1_right_up = -ahead_q1_left_down  # turned, within rounding, to where q3 has a solution
+        cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
+        sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned, within rounding, to where q3 has a solution
         found = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (
@@ -2700,11 +2718,11 @@ class ArrayPrograms(Programs):
             sin_q1_left_up, ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down, ahead_q1_right_up,
             cos_q1_right_up, sin_q1_right_up,
         ) = found
-        # q5: linear pair in the q6 radius and r32 equations
+        # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5_left_down = r13*sin_q1_left_down - r23*cos_q1_left_down
         r21_from_q1_left_down = r21*cos_q1_left_down - r11*sin_q1_left_down
         r22_from_q1_left_down = r22*cos_q1_left_down - r12*sin_q1_left_down
-        # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
         radius_q6_left_down = sqrt(
             r21_from_q1_left_down*r21_from_q1_left_down + r22_from_q1_left_down*r22_from_q1_left_down
         )
@@ -2714,11 +2732,11 @@ class ArrayPrograms(Programs):
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
-            cos_q6_before_q6_of_q3_left_down = cos_of_free_a6  # its reference where it is free
+            cos_q6_before_q6_of_q3_left_down = cos_of_free_a6  # in the singularity: the angle of the reference
             sin_q6_before_q6_of_q3_left_down = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down)
 
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left_down/radius_q6_left_down
         sin_q6_before_q6_of_q3_left_down = r22_from_q1_left_down/radius_q6_left_down
         cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down = elsewhere(
@@ -2742,7 +2760,7 @@ class ArrayPrograms(Programs):
         wrist_y_from_q1_before_q6_of_q3_left_down = (
             wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_left_down
         )
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3_left_down = (
             wrist_x_from_q1_before_q6_of_q3_left_down*wrist_x_from_q1_before_q6_of_q3_left_down
             + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down
@@ -2781,7 +2799,7 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_highest_q6_of_q3_left_down() -> Reals:
-                    highest_q6_of_q3_left_down = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_left_down = 1.0  # feasible arc: cosines of its ends
                     lowest_q6_of_q3_left_down = -1.0
                     return (highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down)
 
@@ -2790,7 +2808,7 @@ class ArrayPrograms(Programs):
                     - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down
                 )
                 part_of_highest_q6_of_q3_left_down = (size_q1_for_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 highest_q6_of_q3_left_down = select(
                     part_of_highest_q6_of_q3_left_down > 1.0,
                     1.0,
@@ -2838,7 +2856,7 @@ class ArrayPrograms(Programs):
                 sin_q6_after_q6_of_q3_left_down = sin(moved_q6_of_q3_left_down)
                 part_of_cost_q6_of_q3_left_down = sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down
                 part_of_cost_q6_of_q3_2_left_down = cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3_left_down = (
                     sqrt(
                         part_of_cost_q6_of_q3_2_left_down*part_of_cost_q6_of_q3_2_left_down
@@ -2851,12 +2869,16 @@ class ArrayPrograms(Programs):
                 def elsewhere_cos_q6_left_down(
                     cos_q6_after_q6_of_q3_left_down: Real, sin_q6_after_q6_of_q3_left_down: Real,
                 ) -> Reals:
-                    cos_q6_left_down = cos_q6_after_q6_of_q3_left_down  # kept where the rest can be reached
-                    sin_q6_left_down = sin_q6_after_q6_of_q3_left_down  # kept where the rest can be reached
+                    # moved to where q3 has a solution, if that changes the pose by rounding only
+                    cos_q6_left_down = cos_q6_after_q6_of_q3_left_down
+                    # moved to where q3 has a solution, if that changes the pose by rounding only
+                    sin_q6_left_down = sin_q6_after_q6_of_q3_left_down
                     return (cos_q6_left_down, sin_q6_left_down)
 
-                cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
-                sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
+                cos_q6_left_down = cos_q6_before_q6_of_q3_left_down
+                # moved to where q3 has a solution, if that changes the pose by rounding only
+                sin_q6_left_down = sin_q6_before_q6_of_q3_left_down
                 cos_q6_left_down, sin_q6_left_down = elsewhere(
                     stays_q6_of_q3_left_down,
                     (cos_q6_left_down, sin_q6_left_down),
@@ -2865,8 +2887,10 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6_left_down, sin_q6_left_down)
 
-            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
-            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
+            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down
+            # moved to where q3 has a solution, if that changes the pose by rounding only
+            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down
             cos_q6_left_down, sin_q6_left_down = elsewhere(
                 (radius_q6_left_down > 0.1) & (size_of_value_q6_of_q3_left_down > part_of_cos_q6),
                 (cos_q6_left_down, sin_q6_left_down),
@@ -2879,8 +2903,10 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6_left_down, sin_q6_left_down)
 
-        cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
-        sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        cos_q6_left_down = cos_q6_before_q6_of_q3_left_down
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        sin_q6_left_down = sin_q6_before_q6_of_q3_left_down
         cos_q6_left_down, sin_q6_left_down = elsewhere(
             size_of_value_q6_of_q3_left_down <= size_q1_for_q3,
             (cos_q6_left_down, sin_q6_left_down),
@@ -2895,11 +2921,12 @@ class ArrayPrograms(Programs):
         r21_from_q1_before_q56_left_down = (
             r21_from_q1_before_q6_left_down*cos_q5_left_down - q6_radius_of_q5_times_r33_left_down
         )
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_left_down = ahead_q1_left_down - d5*r21_from_q1_before_q56_left_down
         r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_left_down = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_left_down
+        # distance that the remaining links must span
         reach_left_down = sqrt(
             wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
         )
@@ -2907,26 +2934,26 @@ class ArrayPrograms(Programs):
         one_less_cos_q3_left_down = (a2_plus_a3 + reach_left_down)*(a2_plus_a3 - reach_left_down)
         # 1 + cosine, times the scale
         one_plus_cos_q3_left_down = (reach_left_down - a2_minus_a3)*(a2_minus_a3 + reach_left_down)
-        # the square of sine times scale
+        # sine squared, times the squared scale
         sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down
         # q3: out of reach
         refusal_left_down = select(sine_square_q3_left_down >= -scale_q3_squared_times_rounding, 0, 3)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        # A1: its turn
+        # A1: whole turns added
         axis_a1_left_down = nearest_period(offset_a1 + degrees(sin_q1_left_down, cos_q1_left_down), near_a1)
-        # twice the scale, with the rounding of its parts
-        both_q3_left_down = one_less_cos_q3_left_down + one_plus_cos_q3_left_down
-        sum_q3_left_down = select(absolute(both_q3_left_down) > 0.0, both_q3_left_down, 1.0)
-        cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)/sum_q3_left_down
-        sin_q3_left_up_down = 2.0*root(sine_square_q3_left_down)/absolute(sum_q3_left_down)
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_left_down = one_less_cos_q3_left_down + one_plus_cos_q3_left_down
+        divisor_of_cos_q3_left_down = select(absolute(sum_of_cos_q3_left_down) > 0.0, sum_of_cos_q3_left_down, 1.0)
+        cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)/divisor_of_cos_q3_left_down
+        sin_q3_left_up_down = 2.0*root(sine_square_q3_left_down)/absolute(divisor_of_cos_q3_left_down)
 
         def elsewhere_direction_x_q2_left_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_left_up_down = cos(free_a2)
             direction_y_q2_left_up_down = sin(free_a2)
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_left_down_down = direction_x_q2_left_up_down
             direction_y_q2_left_down_down = direction_y_q2_left_up_down
             return (
@@ -2936,14 +2963,14 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_left_down = a2 + a3*cos_q3_left_down
         arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_left_up_down = (
             arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
         )
         direction_y_q2_left_up_down = (
             arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
         )
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_left_down_down = (
             arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
         )
@@ -2964,32 +2991,35 @@ class ArrayPrograms(Programs):
             direction_y_q2_left_down_down,
         ) = found
         angle_q2_left_up_down = atan2(direction_y_q2_left_up_down, direction_x_q2_left_up_down)
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2_left_up_down = nearest_period(offset_a2 + angle_q2_left_up_down/DEGREE, near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_left_up_down = nearest_period(offset_a2 + angle_q2_left_up_down/DEGREE, near_a2)
         angle_q3_left_up_down = atan2(sin_q3_left_up_down, cos_q3_left_down)
-        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3_left_up_down = nearest_period(offset_a3 + angle_q3_left_up_down/DEGREE, near_a3)  # A3: its turn
+        # A3: whole turns added
+        axis_a3_left_up_down = nearest_period(offset_a3 + angle_q3_left_up_down/DEGREE, near_a3)
         angle_with_q4_left_down = atan2(r21_from_q1_before_q56_left_down, r22_from_q1_before_q6_left_down)
-        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_left_up_down = nearest_period(
             offset_a4 + (angle_with_q4_left_down - angle_q2_left_up_down - angle_q3_left_up_down)/DEGREE, near_a4,
         )
-        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
         near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_left_down = nearest_period(offset_a5 + degrees(radius_q6_left_down, cos_q5_left_down), near_a5)
-        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
         near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_left_down = nearest_period(offset_a6 + degrees(sin_q6_left_down, cos_q6_left_down), near_a6)
-        cos_q5_left_up = r13*sin_q1_left_up - r23*cos_q1_left_up  # q5: linear pair in the q6 radius and r32 equations
+        # cosine and sine of q5 from the q6 radius and r32 equations
+        cos_q5_left_up = r13*sin_q1_left_up - r23*cos_q1_left_up
         r21_from_q1_left_up = r21*cos_q1_left_up - r11*sin_q1_left_up
         r22_from_q1_left_up = r22*cos_q1_left_up - r12*sin_q1_left_up
-        # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
         radius_q6_left_up = sqrt(r21_from_q1_left_up*r21_from_q1_left_up + r22_from_q1_left_up*r22_from_q1_left_up)
         q6_radius_of_q5_times_r33_left_up = -r33*radius_q6_left_up
 
@@ -2997,11 +3027,12 @@ class ArrayPrograms(Programs):
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
-            cos_q6_before_q6_of_q3_left_up = cos_of_free_a6  # its reference where it is free
+            cos_q6_before_q6_of_q3_left_up = cos_of_free_a6  # in the singularity: the angle of the reference
             sin_q6_before_q6_of_q3_left_up = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up)
 
-        cos_q6_before_q6_of_q3_left_up = r21_from_q1_left_up/radius_q6_left_up  # its reference where it is free
+        # in the singularity: the angle of the reference
+        cos_q6_before_q6_of_q3_left_up = r21_from_q1_left_up/radius_q6_left_up
         sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left_up/radius_q6_left_up
         cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up = elsewhere(
             radius_q6_left_up > 1e-11,
@@ -3022,7 +3053,7 @@ class ArrayPrograms(Programs):
         wrist_y_from_q1_before_q6_of_q3_left_up = (
             wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_left_up
         )
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3_left_up = (
             wrist_x_from_q1_before_q6_of_q3_left_up*wrist_x_from_q1_before_q6_of_q3_left_up
             + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up
@@ -3061,7 +3092,7 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_highest_q6_of_q3_left_up() -> Reals:
-                    highest_q6_of_q3_left_up = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_left_up = 1.0  # feasible arc: cosines of its ends
                     lowest_q6_of_q3_left_up = -1.0
                     return (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up)
 
@@ -3070,7 +3101,7 @@ class ArrayPrograms(Programs):
                     - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
                 )
                 part_of_highest_q6_of_q3_left_up = (size_q1_for_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 highest_q6_of_q3_left_up = select(
                     part_of_highest_q6_of_q3_left_up > 1.0,
                     1.0,
@@ -3115,7 +3146,7 @@ class ArrayPrograms(Programs):
                 sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
                 part_of_cost_q6_of_q3_left_up = sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
                 part_of_cost_q6_of_q3_2_left_up = cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3_left_up = (
                     sqrt(
                         part_of_cost_q6_of_q3_2_left_up*part_of_cost_q6_of_q3_2_left_up
@@ -3128,12 +3159,16 @@ class ArrayPrograms(Programs):
                 def elsewhere_cos_q6_left_up(
                     cos_q6_after_q6_of_q3_left_up: Real, sin_q6_after_q6_of_q3_left_up: Real,
                 ) -> Reals:
-                    cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # kept where the rest can be reached
-                    sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # kept where the rest can be reached
+                    # moved to where q3 has a solution, if that changes the pose by rounding only
+                    cos_q6_left_up = cos_q6_after_q6_of_q3_left_up
+                    # moved to where q3 has a solution, if that changes the pose by rounding only
+                    sin_q6_left_up = sin_q6_after_q6_of_q3_left_up
                     return (cos_q6_left_up, sin_q6_left_up)
 
-                cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
-                sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
+                cos_q6_left_up = cos_q6_before_q6_of_q3_left_up
+                # moved to where q3 has a solution, if that changes the pose by rounding only
+                sin_q6_left_up = sin_q6_before_q6_of_q3_left_up
                 cos_q6_left_up, sin_q6_left_up = elsewhere(
                     stays_q6_of_q3_left_up,
                     (cos_q6_left_up, sin_q6_left_up),
@@ -3142,8 +3177,10 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6_left_up, sin_q6_left_up)
 
-            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
-            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
+            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up
+            # moved to where q3 has a solution, if that changes the pose by rounding only
+            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up
             cos_q6_left_up, sin_q6_left_up = elsewhere(
                 (radius_q6_left_up > 0.1) & (size_of_value_q6_of_q3_left_up > part_of_cos_q6),
                 (cos_q6_left_up, sin_q6_left_up),
@@ -3156,8 +3193,10 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6_left_up, sin_q6_left_up)
 
-        cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
-        sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        cos_q6_left_up = cos_q6_before_q6_of_q3_left_up
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        sin_q6_left_up = sin_q6_before_q6_of_q3_left_up
         cos_q6_left_up, sin_q6_left_up = elsewhere(
             size_of_value_q6_of_q3_left_up <= size_q1_for_q3,
             (cos_q6_left_up, sin_q6_left_up),
@@ -3172,11 +3211,12 @@ class ArrayPrograms(Programs):
         r21_from_q1_before_q56_left_up = (
             r21_from_q1_before_q6_left_up*cos_q5_left_up - q6_radius_of_q5_times_r33_left_up
         )
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_left_up = ahead_q1_left_up - d5*r21_from_q1_before_q56_left_up
         r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_left_up = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_left_up
+        # distance that the remaining links must span
         reach_left_up = sqrt(
             wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
         )
@@ -3184,21 +3224,23 @@ class ArrayPrograms(Programs):
         one_less_cos_q3_left_up = (a2_plus_a3 + reach_left_up)*(a2_plus_a3 - reach_left_up)
         # 1 + cosine, times the scale
         one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up)
-        sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up  # the square of sine times scale
+        # sine squared, times the squared scale
+        sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up
         refusal_left_up = select(sine_square_q3_left_up >= -scale_q3_squared_times_rounding, 0, 3)  # q3: out of reach
-        axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)  # A1: its turn
-        # twice the scale, with the rounding of its parts
-        both_q3_left_up = one_less_cos_q3_left_up + one_plus_cos_q3_left_up
-        sum_q3_left_up = select(absolute(both_q3_left_up) > 0.0, both_q3_left_up, 1.0)
-        cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)/sum_q3_left_up
-        sin_q3_left_up_up = 2.0*root(sine_square_q3_left_up)/absolute(sum_q3_left_up)
+        # A1: whole turns added
+        axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_left_up = one_less_cos_q3_left_up + one_plus_cos_q3_left_up
+        divisor_of_cos_q3_left_up = select(absolute(sum_of_cos_q3_left_up) > 0.0, sum_of_cos_q3_left_up, 1.0)
+        cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)/divisor_of_cos_q3_left_up
+        sin_q3_left_up_up = 2.0*root(sine_square_q3_left_up)/absolute(divisor_of_cos_q3_left_up)
 
         def elsewhere_direction_x_q2_left_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_left_up_up = cos(free_a2)
             direction_y_q2_left_up_up = sin(free_a2)
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_left_down_up = direction_x_q2_left_up_up
             direction_y_q2_left_down_up = direction_y_q2_left_up_up
             return (
@@ -3208,14 +3250,14 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_left_up = a2 + a3*cos_q3_left_up
         arm_across_q2_left_up_up = a3*sin_q3_left_up_up
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_left_up_up = (
             arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
         )
         direction_y_q2_left_up_up = (
             arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
         )
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_left_down_up = (
             arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
         )
@@ -3236,38 +3278,43 @@ class ArrayPrograms(Programs):
             direction_y_q2_left_down_up,
         ) = found
         angle_q2_left_up_up = atan2(direction_y_q2_left_up_up, direction_x_q2_left_up_up)
-        axis_a2_left_up_up = nearest_period(offset_a2 + angle_q2_left_up_up/DEGREE, near_a2)  # A2: its turn
+        axis_a2_left_up_up = nearest_period(offset_a2 + angle_q2_left_up_up/DEGREE, near_a2)  # A2: whole turns added
         angle_q3_left_up_up = atan2(sin_q3_left_up_up, cos_q3_left_up)
-        axis_a3_left_up_up = nearest_period(offset_a3 + angle_q3_left_up_up/DEGREE, near_a3)  # A3: its turn
+        axis_a3_left_up_up = nearest_period(offset_a3 + angle_q3_left_up_up/DEGREE, near_a3)  # A3: whole turns added
         angle_with_q4_left_up = atan2(r21_from_q1_before_q56_left_up, r22_from_q1_before_q6_left_up)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_left_up_up = nearest_period(
             offset_a4 + (angle_with_q4_left_up - angle_q2_left_up_up - angle_q3_left_up_up)/DEGREE, near_a4,
         )
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_left_up = nearest_period(offset_a5 + degrees(-radius_q6_left_up, cos_q5_left_up), near_a5)
-        axis_a6_left_up = nearest_period(offset_a6 + degrees(sin_q6_left_up, cos_q6_left_up), near_a6)  # A6: its turn
+        # A6: whole turns added
+        axis_a6_left_up = nearest_period(offset_a6 + degrees(sin_q6_left_up, cos_q6_left_up), near_a6)
         angle_q2_left_down_down = atan2(direction_y_q2_left_down_down, direction_x_q2_left_down_down)
-        axis_a2_left_down_down = nearest_period(offset_a2 + angle_q2_left_down_down/DEGREE, near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_left_down_down = nearest_period(offset_a2 + angle_q2_left_down_down/DEGREE, near_a2)
         angle_q3_left_down_down = atan2(-sin_q3_left_up_down, cos_q3_left_down)
-        axis_a3_left_down_down = nearest_period(offset_a3 + angle_q3_left_down_down/DEGREE, near_a3)  # A3: its turn
-        # q4: what the sum q234 leaves; A4: its turn
+        # A3: whole turns added
+        axis_a3_left_down_down = nearest_period(offset_a3 + angle_q3_left_down_down/DEGREE, near_a3)
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_left_down_down = nearest_period(
             offset_a4 + (angle_with_q4_left_down - angle_q2_left_down_down - angle_q3_left_down_down)/DEGREE, near_a4,
         )
         angle_q2_left_down_up = atan2(direction_y_q2_left_down_up, direction_x_q2_left_down_up)
-        axis_a2_left_down_up = nearest_period(offset_a2 + angle_q2_left_down_up/DEGREE, near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_left_down_up = nearest_period(offset_a2 + angle_q2_left_down_up/DEGREE, near_a2)
         angle_q3_left_down_up = atan2(-sin_q3_left_up_up, cos_q3_left_up)
-        axis_a3_left_down_up = nearest_period(offset_a3 + angle_q3_left_down_up/DEGREE, near_a3)  # A3: its turn
-        # q4: what the sum q234 leaves; A4: its turn
+        # A3: whole turns added
+        axis_a3_left_down_up = nearest_period(offset_a3 + angle_q3_left_down_up/DEGREE, near_a3)
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_left_down_up = nearest_period(
             offset_a4 + (angle_with_q4_left_up - angle_q2_left_down_up - angle_q3_left_down_up)/DEGREE, near_a4,
         )
-        # q5: linear pair in the q6 radius and r32 equations
+        # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5_right_down = r13*sin_q1_right_down - r23*cos_q1_right_down
         r21_from_q1_right_down = r21*cos_q1_right_down - r11*sin_q1_right_down
         r22_from_q1_right_down = r22*cos_q1_right_down - r12*sin_q1_right_down
-        # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
         radius_q6_right_down = sqrt(
             r21_from_q1_right_down*r21_from_q1_right_down + r22_from_q1_right_down*r22_from_q1_right_down
         )
@@ -3277,11 +3324,11 @@ class ArrayPrograms(Programs):
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
-            cos_q6_before_q6_of_q3_right_down = cos_of_free_a6  # its reference where it is free
+            cos_q6_before_q6_of_q3_right_down = cos_of_free_a6  # in the singularity: the angle of the reference
             sin_q6_before_q6_of_q3_right_down = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down)
 
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right_down/radius_q6_right_down
         sin_q6_before_q6_of_q3_right_down = r22_from_q1_right_down/radius_q6_right_down
         cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down = elsewhere(
@@ -3305,7 +3352,7 @@ class ArrayPrograms(Programs):
         wrist_y_from_q1_before_q6_of_q3_right_down = (
             wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_right_down
         )
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3_right_down = (
             wrist_x_from_q1_before_q6_of_q3_right_down*wrist_x_from_q1_before_q6_of_q3_right_down
             + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down
@@ -3345,7 +3392,7 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_highest_q6_of_q3_right_down() -> Reals:
-                    highest_q6_of_q3_right_down = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_right_down = 1.0  # feasible arc: cosines of its ends
                     lowest_q6_of_q3_right_down = -1.0
                     return (highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down)
 
@@ -3354,7 +3401,7 @@ class ArrayPrograms(Programs):
                     - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
                 )
                 part_of_highest_q6_of_q3_right_down = (size_q1_for_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 highest_q6_of_q3_right_down = select(
                     part_of_highest_q6_of_q3_right_down > 1.0,
                     1.0,
@@ -3402,7 +3449,7 @@ class ArrayPrograms(Programs):
                 sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down)
                 part_of_cost_q6_of_q3_right_down = sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
                 part_of_cost_q6_of_q3_2_right_down = cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3_right_down = (
                     sqrt(
                         part_of_cost_q6_of_q3_2_right_down*part_of_cost_q6_of_q3_2_right_down
@@ -3415,12 +3462,16 @@ class ArrayPrograms(Programs):
                 def elsewhere_cos_q6_right_down(
                     cos_q6_after_q6_of_q3_right_down: Real, sin_q6_after_q6_of_q3_right_down: Real,
                 ) -> Reals:
-                    cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # kept where the rest can be reached
-                    sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # kept where the rest can be reached
+                    # moved to where q3 has a solution, if that changes the pose by rounding only
+                    cos_q6_right_down = cos_q6_after_q6_of_q3_right_down
+                    # moved to where q3 has a solution, if that changes the pose by rounding only
+                    sin_q6_right_down = sin_q6_after_q6_of_q3_right_down
                     return (cos_q6_right_down, sin_q6_right_down)
 
-                cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
-                sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
+                cos_q6_right_down = cos_q6_before_q6_of_q3_right_down
+                # moved to where q3 has a solution, if that changes the pose by rounding only
+                sin_q6_right_down = sin_q6_before_q6_of_q3_right_down
                 cos_q6_right_down, sin_q6_right_down = elsewhere(
                     stays_q6_of_q3_right_down,
                     (cos_q6_right_down, sin_q6_right_down),
@@ -3429,8 +3480,10 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6_right_down, sin_q6_right_down)
 
-            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
-            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
+            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down
+            # moved to where q3 has a solution, if that changes the pose by rounding only
+            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down
             cos_q6_right_down, sin_q6_right_down = elsewhere(
                 (radius_q6_right_down > 0.1) & (size_of_value_q6_of_q3_right_down > part_of_cos_q6),
                 (cos_q6_right_down, sin_q6_right_down),
@@ -3443,8 +3496,10 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6_right_down, sin_q6_right_down)
 
-        cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
-        sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        cos_q6_right_down = cos_q6_before_q6_of_q3_right_down
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        sin_q6_right_down = sin_q6_before_q6_of_q3_right_down
         cos_q6_right_down, sin_q6_right_down = elsewhere(
             size_of_value_q6_of_q3_right_down <= size_q1_for_q3,
             (cos_q6_right_down, sin_q6_right_down),
@@ -3460,11 +3515,12 @@ class ArrayPrograms(Programs):
         r21_from_q1_before_q56_right_down = (
             r21_from_q1_before_q6_right_down*cos_q5_right_down - q6_radius_of_q5_times_r33_right_down
         )
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_right_down = ahead_q1_right_down - d5*r21_from_q1_before_q56_right_down
         r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_right_down = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_right_down
+        # distance that the remaining links must span
         reach_right_down = sqrt(
             wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
             + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
@@ -3473,24 +3529,24 @@ class ArrayPrograms(Programs):
         one_less_cos_q3_right_down = (a2_plus_a3 + reach_right_down)*(a2_plus_a3 - reach_right_down)
         # 1 + cosine, times the scale
         one_plus_cos_q3_right_down = (reach_right_down - a2_minus_a3)*(a2_minus_a3 + reach_right_down)
-        # the square of sine times scale
+        # sine squared, times the squared scale
         sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down
         # q3: out of reach
         refusal_right_down = select(sine_square_q3_right_down >= -scale_q3_squared_times_rounding, 0, 3)
-        # A1: its turn
+        # A1: whole turns added
         axis_a1_right_down = nearest_period(offset_a1 + degrees(sin_q1_right_down, cos_q1_right_down), near_a1)
-        # twice the scale, with the rounding of its parts
-        both_q3_right_down = one_less_cos_q3_right_down + one_plus_cos_q3_right_down
-        sum_q3_right_down = select(absolute(both_q3_right_down) > 0.0, both_q3_right_down, 1.0)
-        cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)/sum_q3_right_down
-        sin_q3_right_up_down = 2.0*root(sine_square_q3_right_down)/absolute(sum_q3_right_down)
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_right_down = one_less_cos_q3_right_down + one_plus_cos_q3_right_down
+        divisor_of_cos_q3_right_down = select(absolute(sum_of_cos_q3_right_down) > 0.0, sum_of_cos_q3_right_down, 1.0)
+        cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)/divisor_of_cos_q3_right_down
+        sin_q3_right_up_down = 2.0*root(sine_square_q3_right_down)/absolute(divisor_of_cos_q3_right_down)
 
         def elsewhere_direction_x_q2_right_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_right_up_down = cos(free_a2)
             direction_y_q2_right_up_down = sin(free_a2)
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_right_down_down = direction_x_q2_right_up_down
             direction_y_q2_right_down_down = direction_y_q2_right_up_down
             return (
@@ -3500,7 +3556,7 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_right_down = a2 + a3*cos_q3_right_down
         arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_right_up_down = (
             arm_across_q2_right_up_down*wrist_y_from_q1_right_down
             + arm_along_q2_right_down*wrist_x_from_q1_right_down
@@ -3509,7 +3565,7 @@ class ArrayPrograms(Programs):
             arm_along_q2_right_down*wrist_y_from_q1_right_down
             - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
         )
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_right_down_down = (
             arm_along_q2_right_down*wrist_x_from_q1_right_down
             - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
@@ -3532,23 +3588,25 @@ class ArrayPrograms(Programs):
             direction_y_q2_right_down_down,
         ) = found
         angle_q2_right_up_down = atan2(direction_y_q2_right_up_down, direction_x_q2_right_up_down)
-        axis_a2_right_up_down = nearest_period(offset_a2 + angle_q2_right_up_down/DEGREE, near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_right_up_down = nearest_period(offset_a2 + angle_q2_right_up_down/DEGREE, near_a2)
         angle_q3_right_up_down = atan2(sin_q3_right_up_down, cos_q3_right_down)
-        axis_a3_right_up_down = nearest_period(offset_a3 + angle_q3_right_up_down/DEGREE, near_a3)  # A3: its turn
+        # A3: whole turns added
+        axis_a3_right_up_down = nearest_period(offset_a3 + angle_q3_right_up_down/DEGREE, near_a3)
         angle_with_q4_right_down = atan2(r21_from_q1_before_q56_right_down, r22_from_q1_before_q6_right_down)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_right_up_down = nearest_period(
             offset_a4 + (angle_with_q4_right_down - angle_q2_right_up_down - angle_q3_right_up_down)/DEGREE, near_a4,
         )
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_right_down = nearest_period(offset_a5 + degrees(radius_q6_right_down, cos_q5_right_down), near_a5)
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_right_down = nearest_period(offset_a6 + degrees(sin_q6_right_down, cos_q6_right_down), near_a6)
-        # q5: linear pair in the q6 radius and r32 equations
+        # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5_right_up = r13*sin_q1_right_up - r23*cos_q1_right_up
         r21_from_q1_right_up = r21*cos_q1_right_up - r11*sin_q1_right_up
         r22_from_q1_right_up = r22*cos_q1_right_up - r12*sin_q1_right_up
-        # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
         radius_q6_right_up = sqrt(
             r21_from_q1_right_up*r21_from_q1_right_up + r22_from_q1_right_up*r22_from_q1_right_up
         )
@@ -3558,11 +3616,12 @@ class ArrayPrograms(Programs):
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
-            cos_q6_before_q6_of_q3_right_up = cos_of_free_a6  # its reference where it is free
+            cos_q6_before_q6_of_q3_right_up = cos_of_free_a6  # in the singularity: the angle of the reference
             sin_q6_before_q6_of_q3_right_up = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up)
 
-        cos_q6_before_q6_of_q3_right_up = r21_from_q1_right_up/radius_q6_right_up  # its reference where it is free
+        # in the singularity: the angle of the reference
+        cos_q6_before_q6_of_q3_right_up = r21_from_q1_right_up/radius_q6_right_up
         sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right_up/radius_q6_right_up
         cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up = elsewhere(
             radius_q6_right_up > 1e-11,
@@ -3585,7 +3644,7 @@ class ArrayPrograms(Programs):
         wrist_y_from_q1_before_q6_of_q3_right_up = (
             wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_right_up
         )
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3_right_up = (
             wrist_x_from_q1_before_q6_of_q3_right_up*wrist_x_from_q1_before_q6_of_q3_right_up
             + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up
@@ -3624,7 +3683,7 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_highest_q6_of_q3_right_up() -> Reals:
-                    highest_q6_of_q3_right_up = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_right_up = 1.0  # feasible arc: cosines of its ends
                     lowest_q6_of_q3_right_up = -1.0
                     return (highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up)
 
@@ -3633,7 +3692,7 @@ class ArrayPrograms(Programs):
                     - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
                 )
                 part_of_highest_q6_of_q3_right_up = (size_q1_for_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 highest_q6_of_q3_right_up = select(
                     part_of_highest_q6_of_q3_right_up > 1.0,
                     1.0,
@@ -3678,7 +3737,7 @@ class ArrayPrograms(Programs):
                 sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
                 part_of_cost_q6_of_q3_right_up = sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
                 part_of_cost_q6_of_q3_2_right_up = cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3_right_up = (
                     sqrt(
                         part_of_cost_q6_of_q3_2_right_up*part_of_cost_q6_of_q3_2_right_up
@@ -3691,12 +3750,16 @@ class ArrayPrograms(Programs):
                 def elsewhere_cos_q6_right_up(
                     cos_q6_after_q6_of_q3_right_up: Real, sin_q6_after_q6_of_q3_right_up: Real,
                 ) -> Reals:
-                    cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # kept where the rest can be reached
-                    sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # kept where the rest can be reached
+                    # moved to where q3 has a solution, if that changes the pose by rounding only
+                    cos_q6_right_up = cos_q6_after_q6_of_q3_right_up
+                    # moved to where q3 has a solution, if that changes the pose by rounding only
+                    sin_q6_right_up = sin_q6_after_q6_of_q3_right_up
                     return (cos_q6_right_up, sin_q6_right_up)
 
-                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
-                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
+                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up
+                # moved to where q3 has a solution, if that changes the pose by rounding only
+                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up
                 cos_q6_right_up, sin_q6_right_up = elsewhere(
                     stays_q6_of_q3_right_up,
                     (cos_q6_right_up, sin_q6_right_up),
@@ -3705,8 +3768,10 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6_right_up, sin_q6_right_up)
 
-            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
-            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
+            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up
+            # moved to where q3 has a solution, if that changes the pose by rounding only
+            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up
             cos_q6_right_up, sin_q6_right_up = elsewhere(
                 (radius_q6_right_up > 0.1) & (size_of_value_q6_of_q3_right_up > part_of_cos_q6),
                 (cos_q6_right_up, sin_q6_right_up),
@@ -3719,8 +3784,10 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6_right_up, sin_q6_right_up)
 
-        cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
-        sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        cos_q6_right_up = cos_q6_before_q6_of_q3_right_up
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        sin_q6_right_up = sin_q6_before_q6_of_q3_right_up
         cos_q6_right_up, sin_q6_right_up = elsewhere(
             size_of_value_q6_of_q3_right_up <= size_q1_for_q3,
             (cos_q6_right_up, sin_q6_right_up),
@@ -3735,11 +3802,12 @@ class ArrayPrograms(Programs):
         r21_from_q1_before_q56_right_up = (
             r21_from_q1_before_q6_right_up*cos_q5_right_up - q6_radius_of_q5_times_r33_right_up
         )
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_right_up = ahead_q1_right_up - d5*r21_from_q1_before_q56_right_up
         r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_right_up = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_right_up
+        # distance that the remaining links must span
         reach_right_up = sqrt(
             wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
         )
@@ -3747,23 +3815,24 @@ class ArrayPrograms(Programs):
         one_less_cos_q3_right_up = (a2_plus_a3 + reach_right_up)*(a2_plus_a3 - reach_right_up)
         # 1 + cosine, times the scale
         one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up)
-        sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up  # the square of sine times scale
+        # sine squared, times the squared scale
+        sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up
         # q3: out of reach
         refusal_right_up = select(sine_square_q3_right_up >= -scale_q3_squared_times_rounding, 0, 3)
-        # A1: its turn
+        # A1: whole turns added
         axis_a1_right_up = nearest_period(offset_a1 + degrees(sin_q1_right_up, cos_q1_right_up), near_a1)
-        # twice the scale, with the rounding of its parts
-        both_q3_right_up = one_less_cos_q3_right_up + one_plus_cos_q3_right_up
-        sum_q3_right_up = select(absolute(both_q3_right_up) > 0.0, both_q3_right_up, 1.0)
-        cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)/sum_q3_right_up
-        sin_q3_right_up_up = 2.0*root(sine_square_q3_right_up)/absolute(sum_q3_right_up)
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_right_up = one_less_cos_q3_right_up + one_plus_cos_q3_right_up
+        divisor_of_cos_q3_right_up = select(absolute(sum_of_cos_q3_right_up) > 0.0, sum_of_cos_q3_right_up, 1.0)
+        cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)/divisor_of_cos_q3_right_up
+        sin_q3_right_up_up = 2.0*root(sine_square_q3_right_up)/absolute(divisor_of_cos_q3_right_up)
 
         def elsewhere_direction_x_q2_right_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_right_up_up = cos(free_a2)
             direction_y_q2_right_up_up = sin(free_a2)
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_right_down_up = direction_x_q2_right_up_up
             direction_y_q2_right_down_up = direction_y_q2_right_up_up
             return (
@@ -3773,14 +3842,14 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_right_up = a2 + a3*cos_q3_right_up
         arm_across_q2_right_up_up = a3*sin_q3_right_up_up
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_right_up_up = (
             arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
         )
         direction_y_q2_right_up_up = (
             arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
         )
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_right_down_up = (
             arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
         )
@@ -3801,32 +3870,38 @@ class ArrayPrograms(Programs):
             direction_y_q2_right_down_up,
         ) = found
         angle_q2_right_up_up = atan2(direction_y_q2_right_up_up, direction_x_q2_right_up_up)
-        axis_a2_right_up_up = nearest_period(offset_a2 + angle_q2_right_up_up/DEGREE, near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_right_up_up = nearest_period(offset_a2 + angle_q2_right_up_up/DEGREE, near_a2)
         angle_q3_right_up_up = atan2(sin_q3_right_up_up, cos_q3_right_up)
-        axis_a3_right_up_up = nearest_period(offset_a3 + angle_q3_right_up_up/DEGREE, near_a3)  # A3: its turn
+        # A3: whole turns added
+        axis_a3_right_up_up = nearest_period(offset_a3 + angle_q3_right_up_up/DEGREE, near_a3)
         angle_with_q4_right_up = atan2(r21_from_q1_before_q56_right_up, r22_from_q1_before_q6_right_up)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_right_up_up = nearest_period(
             offset_a4 + (angle_with_q4_right_up - angle_q2_right_up_up - angle_q3_right_up_up)/DEGREE, near_a4,
         )
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_right_up = nearest_period(offset_a5 + degrees(-radius_q6_right_up, cos_q5_right_up), near_a5)
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_right_up = nearest_period(offset_a6 + degrees(sin_q6_right_up, cos_q6_right_up), near_a6)
         angle_q2_right_down_down = atan2(direction_y_q2_right_down_down, direction_x_q2_right_down_down)
-        axis_a2_right_down_down = nearest_period(offset_a2 + angle_q2_right_down_down/DEGREE, near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_right_down_down = nearest_period(offset_a2 + angle_q2_right_down_down/DEGREE, near_a2)
         angle_q3_right_down_down = atan2(-sin_q3_right_up_down, cos_q3_right_down)
-        axis_a3_right_down_down = nearest_period(offset_a3 + angle_q3_right_down_down/DEGREE, near_a3)  # A3: its turn
-        # q4: what the sum q234 leaves; A4: its turn
+        # A3: whole turns added
+        axis_a3_right_down_down = nearest_period(offset_a3 + angle_q3_right_down_down/DEGREE, near_a3)
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_right_down_down = nearest_period(
             (offset_a4 + (angle_with_q4_right_down - angle_q2_right_down_down - angle_q3_right_down_down)/DEGREE),
             near_a4,
         )
         angle_q2_right_down_up = atan2(direction_y_q2_right_down_up, direction_x_q2_right_down_up)
-        axis_a2_right_down_up = nearest_period(offset_a2 + angle_q2_right_down_up/DEGREE, near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_right_down_up = nearest_period(offset_a2 + angle_q2_right_down_up/DEGREE, near_a2)
         angle_q3_right_down_up = atan2(-sin_q3_right_up_up, cos_q3_right_up)
-        axis_a3_right_down_up = nearest_period(offset_a3 + angle_q3_right_down_up/DEGREE, near_a3)  # A3: its turn
-        # q4: what the sum q234 leaves; A4: its turn
+        # A3: whole turns added
+        axis_a3_right_down_up = nearest_period(offset_a3 + angle_q3_right_down_up/DEGREE, near_a3)
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_right_down_up = nearest_period(
             offset_a4 + (angle_with_q4_right_up - angle_q2_right_down_up - angle_q3_right_down_up)/DEGREE, near_a4,
         )

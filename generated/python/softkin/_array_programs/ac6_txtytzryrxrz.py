@@ -54,7 +54,7 @@ class ArrayPrograms(Programs):
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -127,7 +127,7 @@ class ArrayPrograms(Programs):
         single_a5 = k.single_a5
         single_a6 = k.single_a6
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -136,21 +136,23 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
+        # wrist centre: the point in which the last axes intersect
+        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # polar coordinates: the radius at angle a4
 
         def elsewhere_direction_x_a4(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_a4 = cos(free_a4)  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
+            direction_x_a4 = cos(free_a4)
             direction_y_a4 = sin(free_a4)
             return (direction_x_a4, direction_y_a4)
 
-        # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
         direction_x_a4 = sigma_wrist*r33
         direction_y_a4 = sigma_wrist*r13
         direction_x_a4, direction_y_a4 = elsewhere(
@@ -159,18 +161,20 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_a4,
             (ref_a4,),
         )
-        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        axis_a4 = nearest_period(offset_a4 + degrees(direction_y_a4, direction_x_a4), near_a4)  # A4: its turn
+        # A4: whole turns added
+        axis_a4 = nearest_period(offset_a4 + degrees(direction_y_a4, direction_x_a4), near_a4)
         a4_radius_of_a5 = sigma_wrist*radius_a4
-        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
         near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        axis_a5 = nearest_period(offset_a5 + degrees(-r23, a4_radius_of_a5), near_a5)  # A5: its turn
+        axis_a5 = nearest_period(offset_a5 + degrees(-r23, a4_radius_of_a5), near_a5)  # A5: whole turns added
         scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
         direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
-        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
         near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
-        axis_a6 = nearest_period(offset_a6 + degrees(direction_y_a6, scaled_r11_from_a4), near_a6)  # A6: its turn
+        # A6: whole turns added
+        axis_a6 = nearest_period(offset_a6 + degrees(direction_y_a6, scaled_r11_from_a4), near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -229,7 +233,7 @@ class ArrayPrograms(Programs):
         single_a5 = k.single_a5
         single_a6 = k.single_a6
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -238,27 +242,30 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
+        # wrist centre: the point in which the last axes intersect
+        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # polar coordinates: the radius at angle a4
 
         def elsewhere_direction_x_a4_upright(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
             direction_x_a4_upright = cos(free_a4)
             direction_y_a4_upright = sin(free_a4)
-            # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
             direction_x_a4_flipped = direction_x_a4_upright
             direction_y_a4_flipped = direction_y_a4_upright
             return (direction_x_a4_upright, direction_y_a4_upright, direction_x_a4_flipped, direction_y_a4_flipped)
 
-        direction_x_a4_upright = r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
+        direction_x_a4_upright = r33
         direction_y_a4_upright = r13
-        direction_x_a4_flipped = -r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
+        direction_x_a4_flipped = -r33
         direction_y_a4_flipped = -r13
         direction_x_a4_upright, direction_y_a4_upright, direction_x_a4_flipped, direction_y_a4_flipped = elsewhere(
             radius_a4 > 1e-11,
@@ -266,28 +273,28 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_a4_upright,
             (ref_a4,),
         )
-        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_upright = nearest_period(offset_a4 + degrees(direction_y_a4_upright, direction_x_a4_upright), near_a4)
-        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
         near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        axis_a5_upright = nearest_period(offset_a5 + degrees(-r23, radius_a4), near_a5)  # A5: its turn
+        axis_a5_upright = nearest_period(offset_a5 + degrees(-r23, radius_a4), near_a5)  # A5: whole turns added
         scaled_r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
         direction_y_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
-        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
         near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_upright = nearest_period(
             offset_a6 + degrees(direction_y_a6_upright, scaled_r11_from_a4_upright),
             near_a6,
         )
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_flipped = nearest_period(offset_a4 + degrees(direction_y_a4_flipped, direction_x_a4_flipped), near_a4)
-        axis_a5_flipped = nearest_period(offset_a5 + degrees(-r23, -radius_a4), near_a5)  # A5: its turn
+        axis_a5_flipped = nearest_period(offset_a5 + degrees(-r23, -radius_a4), near_a5)  # A5: whole turns added
         scaled_r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
         direction_y_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_flipped = nearest_period(
             offset_a6 + degrees(direction_y_a6_flipped, scaled_r11_from_a4_flipped),
             near_a6,

@@ -62,7 +62,7 @@ class ArrayPrograms(Programs):
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -130,7 +130,7 @@ class ArrayPrograms(Programs):
         r31_at_q5 = r31_at_q4*cos_q5 + sin_q23*sin_q5
         r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
         r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6_times_r22_at_q5
         branch_arm = (wrist_x*cos_q1 + wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
@@ -197,7 +197,7 @@ class ArrayPrograms(Programs):
         swing_scale_q3_squared_times_rounding = k.swing_scale_q3_squared_times_rounding
         twice_d3 = k.twice_d3
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -207,34 +207,35 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
         wrist_z = z - d6*r33
-        wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+        wrist_y_from_q1 = wrist_z - d1  # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = root(ahead_squared_q1)*sigma_arm
         wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
-        # a later step needs this of q1: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q1_for_q3 = (
             wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
             - a2_squared_plus_effective_q3_squared
         )
-        rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+        rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
 
         def elsewhere_turn_q1_for_q3() -> Reals:
-            turn_q1_for_q3 = 0.0  # to the boundary of the later step
+            turn_q1_for_q3 = 0.0  # turn of q1 to the bound, to first order
             return (turn_q1_for_q3,)
 
         excess_q1_for_q3 = select(
             value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3,
         )
-        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
+        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # turn of q1 to the bound, to first order
         (turn_q1_for_q3,) = elsewhere(
             absolute(rate_q1_for_q3) > size_q1_for_q3_times_rounding,
             (turn_q1_for_q3,),
@@ -247,11 +248,12 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)  # its reference where it is free
+            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/distance_q1_squared
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
@@ -266,9 +268,9 @@ class ArrayPrograms(Programs):
         turned_sin_q1_for_q3 = (
             one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
         )
-        # what is left of its own equation
+        # residual of the equation of q1
         turned_cost_q1_for_q3 = absolute(d3 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
-        # turned within rounding, where the rest can be reached
+        # turned, within rounding, to where q3 has a solution
         ahead_q1 = select(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             ahead_q1_before_q1_for_q3,
@@ -281,12 +283,13 @@ class ArrayPrograms(Programs):
                 ),
             ),
         )
-        wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
+        wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
         one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)  # 1 - cosine, times the scale
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         # q3: out of reach
         require(status, sine_square_q3 >= -swing_scale_q3_squared_times_rounding, Status.UNREACHABLE)
 
@@ -301,12 +304,12 @@ class ArrayPrograms(Programs):
             ) -> Reals:
 
                 def elsewhere_cos_q1(turned_cos_q1_for_q3: Real, turned_sin_q1_for_q3: Real) -> Reals:
-                    cos_q1 = turned_cos_q1_for_q3  # turned within rounding, where the rest can be reached
-                    sin_q1 = turned_sin_q1_for_q3  # turned within rounding, where the rest can be reached
+                    cos_q1 = turned_cos_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                    sin_q1 = turned_sin_q1_for_q3  # turned, within rounding, to where q3 has a solution
                     return (cos_q1, sin_q1)
 
-                cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-                sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+                cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
                 cos_q1, sin_q1 = elsewhere(
                     turned_cost_q1_for_q3 > machine_scale_times_rounding,
                     (cos_q1, sin_q1),
@@ -315,8 +318,8 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q1, sin_q1)
 
-            cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-            sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+            cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+            sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
             cos_q1, sin_q1 = elsewhere(
                 absolute(value_q1_for_q3) <= size_q1_for_q3,
                 (cos_q1, sin_q1),
@@ -328,8 +331,8 @@ class ArrayPrograms(Programs):
             )
             return (cos_q1, sin_q1)
 
-        cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-        sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+        cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+        sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
         cos_q1, sin_q1 = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (cos_q1, sin_q1),
@@ -339,23 +342,24 @@ class ArrayPrograms(Programs):
                 turned_sin_q1_for_q3, value_q1_for_q3,
             ),
         )
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = select(both_q3 > 0.0, both_q3, 1.0)
-        sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = select(sum_of_cos_q3 > 0.0, sum_of_cos_q3, 1.0)
+        sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
 
         def elsewhere_cos_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2 = cos(free_a2)  # its reference where it is free
+            cos_q2 = cos(free_a2)  # in the singularity: the angle of the reference
             sin_q2 = sin(free_a2)
             return (cos_q2, sin_q2)
 
         arm_along_q2 = -effective_q3*sin_swing_q3
         arm_across_q2 = a2 + effective_q3*cos_swing_q3
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        # rotation by q2 that takes the arm to the point that it must reach
         along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
         across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2
@@ -364,7 +368,7 @@ class ArrayPrograms(Programs):
             root(across_q2_squared_plus_along_q2_squared),
             1.0,
         )
-        cos_q2 = along_q2/length_q2  # its reference where it is free
+        cos_q2 = along_q2/length_q2  # in the singularity: the angle of the reference
         sin_q2 = across_q2/length_q2
         cos_q2, sin_q2 = elsewhere(
             reach > machine_scale_times_free_angle,
@@ -372,29 +376,31 @@ class ArrayPrograms(Programs):
             elsewhere_cos_q2,
             (ref_a2,),
         )
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: whole turns added
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3
         sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3
-        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: whole turns added
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
         sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
         cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
         r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
 
         def elsewhere_direction_x_q4(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4 = cos(free_a4)  # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            direction_x_q4 = cos(free_a4)
             direction_y_q4 = sin(free_a4)
             return (direction_x_q4, direction_y_q4)
 
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_q4 = -sigma_hand*r13_from_q123
         direction_y_q4 = sigma_hand*r23_from_q1
         direction_x_q4, direction_y_q4 = elsewhere(
@@ -403,14 +409,15 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_q4,
             (ref_a4,),
         )
-        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        axis_a4 = nearest_period(offset_a4 + degrees(direction_y_q4, direction_x_q4), near_a4)  # A4: its turn
+        # A4: whole turns added
+        axis_a4 = nearest_period(offset_a4 + degrees(direction_y_q4, direction_x_q4), near_a4)
         q4_radius_of_q5 = sigma_hand*radius_q4
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
         near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        axis_a5 = nearest_period(offset_a5 + degrees(q4_radius_of_q5, cos_q5), near_a5)  # A5: its turn
+        axis_a5 = nearest_period(offset_a5 + degrees(q4_radius_of_q5, cos_q5), near_a5)  # A5: whole turns added
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r11_from_q1 = r11*cos_q1 + r21*sin_q1
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
@@ -419,9 +426,9 @@ class ArrayPrograms(Programs):
         r12_from_q1 = r12*cos_q1 + r22*sin_q1
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         scaled_r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
-        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
         near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
-        # A6: its turn
+        # A6: whole turns added
         axis_a6 = nearest_period(offset_a6 + degrees(scaled_r21_from_q1234, scaled_r22_from_q1234), near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
@@ -503,7 +510,7 @@ class ArrayPrograms(Programs):
         swing_scale_q3_squared_times_rounding = k.swing_scale_q3_squared_times_rounding
         twice_d3 = k.twice_d3
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -513,35 +520,36 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
         wrist_z = z - d6*r33
-        wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+        wrist_y_from_q1 = wrist_z - d1  # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3_front = root(ahead_squared_q1)
         wrist_x_from_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front - a1
-        # a later step needs this of q1: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q1_for_q3_front = (
             wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3_front*wrist_x_from_q1_before_q1_for_q3_front
             - a2_squared_plus_effective_q3_squared
         )
-        rate_q1_for_q3_front = -twice_d3*wrist_x_from_q1_before_q1_for_q3_front  # how it changes with q1
+        rate_q1_for_q3_front = -twice_d3*wrist_x_from_q1_before_q1_for_q3_front  # its derivative by q1
 
         def elsewhere_turn_q1_for_q3_front() -> Reals:
-            turn_q1_for_q3_front = 0.0  # to the boundary of the later step
+            turn_q1_for_q3_front = 0.0  # turn of q1 to the bound, to first order
             return (turn_q1_for_q3_front,)
 
         excess_q1_for_q3_front = select(
             value_q1_for_q3_front > 0.0, value_q1_for_q3_front - size_q1_for_q3,
             size_q1_for_q3 + value_q1_for_q3_front,
         )
-        turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # to the boundary of the later step
+        turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # turn of q1 to the bound, to first order
         (turn_q1_for_q3_front,) = elsewhere(
             absolute(rate_q1_for_q3_front) > size_q1_for_q3_times_rounding,
             (turn_q1_for_q3_front,),
@@ -551,19 +559,21 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_before_q1_for_q3_front(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3_front = cos(free_a1)  # its reference where it is free
+            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            cos_q1_before_q1_for_q3_front = cos(free_a1)
             sin_q1_before_q1_for_q3_front = sin(free_a1)
-            cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front  # its reference where it is free
+            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
             return (
                 cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back,
                 sin_q1_before_q1_for_q3_back,
             )
 
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_y + d3*wrist_x)/distance_q1_squared
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3_back = (d3*wrist_x - ahead_q1_before_q1_for_q3_front*wrist_y)/distance_q1_squared
         found = elsewhere(
@@ -605,7 +615,7 @@ class ArrayPrograms(Programs):
                     one_by_turned_length_q1_for_q3_front
                     *(sin_q1_before_q1_for_q3_front + turn_q1_for_q3_front*cos_q1_before_q1_for_q3_front)
                 )
-                # what is left of its own equation
+                # residual of the equation of q1
                 turned_cost_q1_for_q3_front = absolute(
                     d3 + turned_cos_q1_for_q3_front*wrist_y - turned_sin_q1_for_q3_front*wrist_x
                 )
@@ -613,14 +623,14 @@ class ArrayPrograms(Programs):
                 def elsewhere_ahead_q1_front(
                     turned_ahead_q1_for_q3_front: Real, turned_cos_q1_for_q3_front: Real, turned_sin_q1_for_q3_front: Real,
                 ) -> Reals:
-                    ahead_q1_front = turned_ahead_q1_for_q3_front  # turned within rounding, where the rest can be reached
-                    cos_q1_front = turned_cos_q1_for_q3_front  # turned within rounding, where the rest can be reached
-                    sin_q1_front = turned_sin_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                    ahead_q1_front = turned_ahead_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                    cos_q1_front = turned_cos_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                    sin_q1_front = turned_sin_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
                     return (ahead_q1_front, cos_q1_front, sin_q1_front)
 
-                ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-                cos_q1_front = cos_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-                sin_q1_front = sin_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
                 ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
                     turned_cost_q1_for_q3_front > machine_scale_times_rounding,
                     (ahead_q1_front, cos_q1_front, sin_q1_front),
@@ -629,9 +639,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_front, cos_q1_front, sin_q1_front)
 
-            ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-            cos_q1_front = cos_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-            sin_q1_front = sin_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+            ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+            cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+            sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
             ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
                 absolute(value_q1_for_q3_front) <= size_q1_for_q3,
                 (ahead_q1_front, cos_q1_front, sin_q1_front),
@@ -642,7 +652,7 @@ class ArrayPrograms(Programs):
                 ),
             )
             wrist_x_from_q1_before_q1_for_q3_back = -a1 - ahead_q1_before_q1_for_q3_front
-            # a later step needs this of q1: no larger in size than
+            # q3 has solutions where this is within its bound
             value_q1_for_q3_back = (
                 wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3_back*wrist_x_from_q1_before_q1_for_q3_back
                 - a2_squared_plus_effective_q3_squared
@@ -653,16 +663,16 @@ class ArrayPrograms(Programs):
                 sin_q1_before_q1_for_q3_back: Real, value_q1_for_q3_back: Real, wrist_x: Real,
                 wrist_x_from_q1_before_q1_for_q3_back: Real, wrist_y: Real,
             ) -> Reals:
-                rate_q1_for_q3_back = -twice_d3*wrist_x_from_q1_before_q1_for_q3_back  # how it changes with q1
+                rate_q1_for_q3_back = -twice_d3*wrist_x_from_q1_before_q1_for_q3_back  # its derivative by q1
 
                 def elsewhere_turn_q1_for_q3_back() -> Reals:
-                    turn_q1_for_q3_back = 0.0  # to the boundary of the later step
+                    turn_q1_for_q3_back = 0.0  # turn of q1 to the bound, to first order
                     return (turn_q1_for_q3_back,)
 
                 excess_q1_for_q3_back = select(
                     value_q1_for_q3_back > 0.0, value_q1_for_q3_back - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3_back,
                 )
-                turn_q1_for_q3_back = -excess_q1_for_q3_back/rate_q1_for_q3_back  # to the boundary of the later step
+                turn_q1_for_q3_back = -excess_q1_for_q3_back/rate_q1_for_q3_back  # turn of q1 to the bound, to first order
                 (turn_q1_for_q3_back,) = elsewhere(
                     absolute(rate_q1_for_q3_back) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_back,),
@@ -679,7 +689,7 @@ class ArrayPrograms(Programs):
                     one_by_turned_length_q1_for_q3_back
                     *(sin_q1_before_q1_for_q3_back + turn_q1_for_q3_back*cos_q1_before_q1_for_q3_back)
                 )
-                # what is left of its own equation
+                # residual of the equation of q1
                 turned_cost_q1_for_q3_back = absolute(
                     d3 + turned_cos_q1_for_q3_back*wrist_y - turned_sin_q1_for_q3_back*wrist_x
                 )
@@ -692,14 +702,14 @@ class ArrayPrograms(Programs):
                         (-ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_back)
                         *one_by_turned_length_q1_for_q3_back
                     )
-                    ahead_q1_back = turned_ahead_q1_for_q3_back  # turned within rounding, where the rest can be reached
-                    cos_q1_back = turned_cos_q1_for_q3_back  # turned within rounding, where the rest can be reached
-                    sin_q1_back = turned_sin_q1_for_q3_back  # turned within rounding, where the rest can be reached
+                    ahead_q1_back = turned_ahead_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+                    cos_q1_back = turned_cos_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+                    sin_q1_back = turned_sin_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
                     return (ahead_q1_back, cos_q1_back, sin_q1_back)
 
-                ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-                cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
-                sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+                ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+                sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
                 ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
                     turned_cost_q1_for_q3_back > machine_scale_times_rounding,
                     (ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -711,9 +721,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_back, cos_q1_back, sin_q1_back)
 
-            ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-            cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
-            sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+            ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+            cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+            sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
             ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
                 absolute(value_q1_for_q3_back) <= size_q1_for_q3,
                 (ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -725,12 +735,12 @@ class ArrayPrograms(Programs):
             )
             return (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back)
 
-        ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-        cos_q1_front = cos_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-        sin_q1_front = sin_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-        ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-        cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
-        sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+        ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+        cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+        sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+        ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+        cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+        sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
         ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -741,35 +751,37 @@ class ArrayPrograms(Programs):
                 value_q1_for_q3_front, wrist_x, wrist_y, wrist_y_from_q1_squared,
             ),
         )
-        wrist_x_from_q1_front = ahead_q1_front - a1  # what the unknown links must span
+        wrist_x_from_q1_front = ahead_q1_front - a1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach_front = root(wrist_y_from_q1_squared + wrist_x_from_q1_front*wrist_x_from_q1_front)
         # 1 - cosine, times the scale
         one_less_cos_q3_front = (a2_plus_effective_q3 + reach_front)*(a2_plus_effective_q3 - reach_front)
         # 1 + cosine, times the scale
         one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_front)
-        sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front  # the square of sine times scale
+        sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front  # sine squared, times the squared scale
         # q3: out of reach
         refusal_front = select(sine_square_q3_front >= -swing_scale_q3_squared_times_rounding, 0, 3)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
-        # twice the scale, with the rounding of its parts
-        both_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
-        sum_q3_front = select(both_q3_front > 0.0, both_q3_front, 1.0)
-        sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/sum_q3_front
-        cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/sum_q3_front
+        # A1: whole turns added
+        axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
+        divisor_of_cos_q3_front = select(sum_of_cos_q3_front > 0.0, sum_of_cos_q3_front, 1.0)
+        sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/divisor_of_cos_q3_front
+        cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/divisor_of_cos_q3_front
 
         def elsewhere_cos_q2_front_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_front_down = cos(free_a2)  # its reference where it is free
+            cos_q2_front_down = cos(free_a2)  # in the singularity: the angle of the reference
             sin_q2_front_down = sin(free_a2)
-            cos_q2_front_up = cos_q2_front_down  # its reference where it is free
+            cos_q2_front_up = cos_q2_front_down  # in the singularity: the angle of the reference
             sin_q2_front_up = sin_q2_front_down
             return (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up)
 
         arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up
         arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        # rotation by q2 that takes the arm to the point that it must reach
         along_q2_front_down = arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
         across_q2_front_down = arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
         across_q2_squared_plus_along_q2_squared_front_down = (
@@ -780,11 +792,11 @@ class ArrayPrograms(Programs):
             root(across_q2_squared_plus_along_q2_squared_front_down),
             1.0,
         )
-        cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
+        cos_q2_front_down = along_q2_front_down/length_q2_front_down  # in the singularity: the angle of the reference
         sin_q2_front_down = across_q2_front_down/length_q2_front_down
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        # rotation by q2 that takes the arm to the point that it must reach
         along_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
-        cos_q2_front_up = along_q2_front_up/length_q2_front_down  # its reference where it is free
+        cos_q2_front_up = along_q2_front_up/length_q2_front_down  # in the singularity: the angle of the reference
         across_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
         sin_q2_front_up = across_q2_front_up/length_q2_front_down
         cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up = elsewhere(
@@ -793,32 +805,33 @@ class ArrayPrograms(Programs):
             elsewhere_cos_q2_front_down,
             (ref_a2,),
         )
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        # A2: its turn
+        # A2: whole turns added
         axis_a2_front_down = nearest_period(offset_a2 + degrees(sin_q2_front_down, cos_q2_front_down), near_a2)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_front_down = a3_by_effective_q3*cos_swing_q3_front + d4_by_effective_q3*sin_swing_q3_front_up
         sin_q3_front_down = d4_by_effective_q3*cos_swing_q3_front - a3_by_effective_q3*sin_swing_q3_front_up
-        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        # A3: its turn
+        # A3: whole turns added
         axis_a3_front_down = nearest_period(offset_a3 + degrees(sin_q3_front_down, cos_q3_front_down), near_a3)
         r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
         sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
         cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
         r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down
         r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4_front_down = sqrt(
             r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
         )
 
         def elsewhere_direction_x_q4_front_down_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_front_down_down = cos(free_a4)
             direction_y_q4_front_down_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_front_down_up = direction_x_q4_front_down_down
             direction_y_q4_front_down_up = direction_y_q4_front_down_down
             return (
@@ -826,10 +839,10 @@ class ArrayPrograms(Programs):
                 direction_y_q4_front_down_up,
             )
 
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_q4_front_down_down = -r13_from_q123_front_down
         direction_y_q4_front_down_down = r23_from_q1_front
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_q4_front_down_up = -direction_x_q4_front_down_down
         direction_y_q4_front_down_up = -r23_from_q1_front
         found = elsewhere(
@@ -845,18 +858,18 @@ class ArrayPrograms(Programs):
             direction_x_q4_front_down_down, direction_y_q4_front_down_down, direction_x_q4_front_down_up,
             direction_y_q4_front_down_up,
         ) = found
-        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_front_down_down = nearest_period(
             offset_a4 + degrees(direction_y_q4_front_down_down, direction_x_q4_front_down_down),
             near_a4,
         )
-        # q5: linear pair in the q4 radius and r23 equations
+        # cosine and sine of q5 from the q4 radius and r23 equations
         cos_q5_front_down = r13_from_q1_front*cos_q23_front_down + r33*sin_q23_front_down
-        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
+        open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
         near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_front_down_down = nearest_period(
             offset_a5 + degrees(radius_q4_front_down, cos_q5_front_down),
             near_a5,
@@ -875,19 +888,19 @@ class ArrayPrograms(Programs):
             -direction_x_q4_front_down_down*r22_from_q1_front
             - direction_y_q4_front_down_down*r12_from_q123_front_down
         )
-        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
+        open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
         near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_front_down_down = nearest_period(
             offset_a6 + degrees(scaled_r21_from_q1234_front_down_down, scaled_r22_from_q1234_front_down_down),
             near_a6,
         )
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_front_down_up = nearest_period(
             offset_a4 + degrees(direction_y_q4_front_down_up, direction_x_q4_front_down_up),
             near_a4,
         )
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_front_down_up = nearest_period(offset_a5 + degrees(-radius_q4_front_down, cos_q5_front_down), near_a5)
         scaled_r21_from_q1234_front_down_up = (
             -direction_x_q4_front_down_up*r21_from_q1_front - direction_y_q4_front_down_up*r11_from_q123_front_down
@@ -895,29 +908,30 @@ class ArrayPrograms(Programs):
         scaled_r22_from_q1234_front_down_up = (
             -direction_x_q4_front_down_up*r22_from_q1_front - direction_y_q4_front_down_up*r12_from_q123_front_down
         )
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_front_down_up = nearest_period(
             offset_a6 + degrees(scaled_r21_from_q1234_front_down_up, scaled_r22_from_q1234_front_down_up),
             near_a6,
         )
-        # A2: its turn
+        # A2: whole turns added
         axis_a2_front_up = nearest_period(offset_a2 + degrees(sin_q2_front_up, cos_q2_front_up), near_a2)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_front_up = a3_by_effective_q3*cos_swing_q3_front - d4_by_effective_q3*sin_swing_q3_front_up
         sin_q3_front_up = a3_by_effective_q3*sin_swing_q3_front_up + d4_by_effective_q3*cos_swing_q3_front
-        # A3: its turn
+        # A3: whole turns added
         axis_a3_front_up = nearest_period(offset_a3 + degrees(sin_q3_front_up, cos_q3_front_up), near_a3)
         sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up
         cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up
         r13_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4_front_up = sqrt(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
 
         def elsewhere_direction_x_q4_front_up_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_front_up_down = cos(free_a4)
             direction_y_q4_front_up_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_front_up_up = direction_x_q4_front_up_down
             direction_y_q4_front_up_up = direction_y_q4_front_up_down
             return (
@@ -925,10 +939,10 @@ class ArrayPrograms(Programs):
                 direction_y_q4_front_up_up,
             )
 
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_q4_front_up_down = -r13_from_q123_front_up
         direction_y_q4_front_up_down = r23_from_q1_front
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_q4_front_up_up = -direction_x_q4_front_up_down
         direction_y_q4_front_up_up = -r23_from_q1_front
         found = elsewhere(
@@ -944,14 +958,14 @@ class ArrayPrograms(Programs):
             direction_x_q4_front_up_down, direction_y_q4_front_up_down, direction_x_q4_front_up_up,
             direction_y_q4_front_up_up,
         ) = found
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_front_up_down = nearest_period(
             offset_a4 + degrees(direction_y_q4_front_up_down, direction_x_q4_front_up_down),
             near_a4,
         )
-        # q5: linear pair in the q4 radius and r23 equations
+        # cosine and sine of q5 from the q4 radius and r23 equations
         cos_q5_front_up = r13_from_q1_front*cos_q23_front_up + r33*sin_q23_front_up
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_front_up_down = nearest_period(offset_a5 + degrees(radius_q4_front_up, cos_q5_front_up), near_a5)
         r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
         scaled_r21_from_q1234_front_up_down = (
@@ -961,17 +975,17 @@ class ArrayPrograms(Programs):
         scaled_r22_from_q1234_front_up_down = (
             -direction_x_q4_front_up_down*r22_from_q1_front - direction_y_q4_front_up_down*r12_from_q123_front_up
         )
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_front_up_down = nearest_period(
             offset_a6 + degrees(scaled_r21_from_q1234_front_up_down, scaled_r22_from_q1234_front_up_down),
             near_a6,
         )
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_front_up_up = nearest_period(
             offset_a4 + degrees(direction_y_q4_front_up_up, direction_x_q4_front_up_up),
             near_a4,
         )
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_front_up_up = nearest_period(offset_a5 + degrees(-radius_q4_front_up, cos_q5_front_up), near_a5)
         scaled_r21_from_q1234_front_up_up = (
             -direction_x_q4_front_up_up*r21_from_q1_front - direction_y_q4_front_up_up*r11_from_q123_front_up
@@ -979,36 +993,38 @@ class ArrayPrograms(Programs):
         scaled_r22_from_q1234_front_up_up = (
             -direction_x_q4_front_up_up*r22_from_q1_front - direction_y_q4_front_up_up*r12_from_q123_front_up
         )
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_front_up_up = nearest_period(
             offset_a6 + degrees(scaled_r21_from_q1234_front_up_up, scaled_r22_from_q1234_front_up_up),
             near_a6,
         )
-        wrist_x_from_q1_back = ahead_q1_back - a1  # what the unknown links must span
+        wrist_x_from_q1_back = ahead_q1_back - a1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach_back = root(wrist_y_from_q1_squared + wrist_x_from_q1_back*wrist_x_from_q1_back)
         # 1 - cosine, times the scale
         one_less_cos_q3_back = (a2_plus_effective_q3 + reach_back)*(a2_plus_effective_q3 - reach_back)
         # 1 + cosine, times the scale
         one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_back)
-        sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back  # the square of sine times scale
+        sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back  # sine squared, times the squared scale
         refusal_back = select(sine_square_q3_back >= -swing_scale_q3_squared_times_rounding, 0, 3)  # q3: out of reach
-        axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
-        both_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back  # twice the scale, with the rounding of its parts
-        sum_q3_back = select(both_q3_back > 0.0, both_q3_back, 1.0)
-        sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/sum_q3_back
-        cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/sum_q3_back
+        axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: whole turns added
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back
+        divisor_of_cos_q3_back = select(sum_of_cos_q3_back > 0.0, sum_of_cos_q3_back, 1.0)
+        sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/divisor_of_cos_q3_back
+        cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back
 
         def elsewhere_cos_q2_back_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_back_down = cos(free_a2)  # its reference where it is free
+            cos_q2_back_down = cos(free_a2)  # in the singularity: the angle of the reference
             sin_q2_back_down = sin(free_a2)
-            cos_q2_back_up = cos_q2_back_down  # its reference where it is free
+            cos_q2_back_up = cos_q2_back_down  # in the singularity: the angle of the reference
             sin_q2_back_up = sin_q2_back_down
             return (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up)
 
         arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up
         arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        # rotation by q2 that takes the arm to the point that it must reach
         along_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
         across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
         across_q2_squared_plus_along_q2_squared_back_down = (
@@ -1019,11 +1035,11 @@ class ArrayPrograms(Programs):
             root(across_q2_squared_plus_along_q2_squared_back_down),
             1.0,
         )
-        cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
+        cos_q2_back_down = along_q2_back_down/length_q2_back_down  # in the singularity: the angle of the reference
         sin_q2_back_down = across_q2_back_down/length_q2_back_down
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        # rotation by q2 that takes the arm to the point that it must reach
         along_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
-        cos_q2_back_up = along_q2_back_up/length_q2_back_down  # its reference where it is free
+        cos_q2_back_up = along_q2_back_up/length_q2_back_down  # in the singularity: the angle of the reference
         across_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
         sin_q2_back_up = across_q2_back_up/length_q2_back_down
         cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up = elsewhere(
@@ -1032,28 +1048,29 @@ class ArrayPrograms(Programs):
             elsewhere_cos_q2_back_down,
             (ref_a2,),
         )
-        # A2: its turn
+        # A2: whole turns added
         axis_a2_back_down = nearest_period(offset_a2 + degrees(sin_q2_back_down, cos_q2_back_down), near_a2)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_back_down = a3_by_effective_q3*cos_swing_q3_back + d4_by_effective_q3*sin_swing_q3_back_up
         sin_q3_back_down = d4_by_effective_q3*cos_swing_q3_back - a3_by_effective_q3*sin_swing_q3_back_up
-        # A3: its turn
+        # A3: whole turns added
         axis_a3_back_down = nearest_period(offset_a3 + degrees(sin_q3_back_down, cos_q3_back_down), near_a3)
         r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
         sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down
         cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down
         r13_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down
         r23_from_q1_back = r23*cos_q1_back - r13*sin_q1_back
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4_back_down = sqrt(
             r13_from_q123_back_down*r13_from_q123_back_down + r23_from_q1_back*r23_from_q1_back
         )
 
         def elsewhere_direction_x_q4_back_down_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_back_down_down = cos(free_a4)
             direction_y_q4_back_down_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_back_down_up = direction_x_q4_back_down_down
             direction_y_q4_back_down_up = direction_y_q4_back_down_down
             return (
@@ -1061,10 +1078,10 @@ class ArrayPrograms(Programs):
                 direction_y_q4_back_down_up,
             )
 
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_q4_back_down_down = -r13_from_q123_back_down
         direction_y_q4_back_down_down = r23_from_q1_back
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_q4_back_down_up = -direction_x_q4_back_down_down
         direction_y_q4_back_down_up = -r23_from_q1_back
         found = elsewhere(
@@ -1080,14 +1097,14 @@ class ArrayPrograms(Programs):
             direction_x_q4_back_down_down, direction_y_q4_back_down_down, direction_x_q4_back_down_up,
             direction_y_q4_back_down_up,
         ) = found
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_back_down_down = nearest_period(
             offset_a4 + degrees(direction_y_q4_back_down_down, direction_x_q4_back_down_down),
             near_a4,
         )
-        # q5: linear pair in the q4 radius and r23 equations
+        # cosine and sine of q5 from the q4 radius and r23 equations
         cos_q5_back_down = r13_from_q1_back*cos_q23_back_down + r33*sin_q23_back_down
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_back_down_down = nearest_period(offset_a5 + degrees(radius_q4_back_down, cos_q5_back_down), near_a5)
         r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
         r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
@@ -1101,17 +1118,17 @@ class ArrayPrograms(Programs):
         scaled_r22_from_q1234_back_down_down = (
             -direction_x_q4_back_down_down*r22_from_q1_back - direction_y_q4_back_down_down*r12_from_q123_back_down
         )
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_back_down_down = nearest_period(
             offset_a6 + degrees(scaled_r21_from_q1234_back_down_down, scaled_r22_from_q1234_back_down_down),
             near_a6,
         )
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_back_down_up = nearest_period(
             offset_a4 + degrees(direction_y_q4_back_down_up, direction_x_q4_back_down_up),
             near_a4,
         )
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_back_down_up = nearest_period(offset_a5 + degrees(-radius_q4_back_down, cos_q5_back_down), near_a5)
         scaled_r21_from_q1234_back_down_up = (
             -direction_x_q4_back_down_up*r21_from_q1_back - direction_y_q4_back_down_up*r11_from_q123_back_down
@@ -1119,27 +1136,30 @@ class ArrayPrograms(Programs):
         scaled_r22_from_q1234_back_down_up = (
             -direction_x_q4_back_down_up*r22_from_q1_back - direction_y_q4_back_down_up*r12_from_q123_back_down
         )
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_back_down_up = nearest_period(
             offset_a6 + degrees(scaled_r21_from_q1234_back_down_up, scaled_r22_from_q1234_back_down_up),
             near_a6,
         )
-        axis_a2_back_up = nearest_period(offset_a2 + degrees(sin_q2_back_up, cos_q2_back_up), near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_back_up = nearest_period(offset_a2 + degrees(sin_q2_back_up, cos_q2_back_up), near_a2)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_back_up = a3_by_effective_q3*cos_swing_q3_back - d4_by_effective_q3*sin_swing_q3_back_up
         sin_q3_back_up = a3_by_effective_q3*sin_swing_q3_back_up + d4_by_effective_q3*cos_swing_q3_back
-        axis_a3_back_up = nearest_period(offset_a3 + degrees(sin_q3_back_up, cos_q3_back_up), near_a3)  # A3: its turn
+        # A3: whole turns added
+        axis_a3_back_up = nearest_period(offset_a3 + degrees(sin_q3_back_up, cos_q3_back_up), near_a3)
         sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up
         cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up
         r13_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4_back_up = sqrt(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
 
         def elsewhere_direction_x_q4_back_up_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_back_up_down = cos(free_a4)
             direction_y_q4_back_up_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_back_up_up = direction_x_q4_back_up_down
             direction_y_q4_back_up_up = direction_y_q4_back_up_down
             return (
@@ -1147,10 +1167,10 @@ class ArrayPrograms(Programs):
                 direction_y_q4_back_up_up,
             )
 
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_q4_back_up_down = -r13_from_q123_back_up
         direction_y_q4_back_up_down = r23_from_q1_back
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_q4_back_up_up = -direction_x_q4_back_up_down
         direction_y_q4_back_up_up = -r23_from_q1_back
         found = elsewhere(
@@ -1166,14 +1186,14 @@ class ArrayPrograms(Programs):
             direction_x_q4_back_up_down, direction_y_q4_back_up_down, direction_x_q4_back_up_up,
             direction_y_q4_back_up_up,
         ) = found
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_back_up_down = nearest_period(
             offset_a4 + degrees(direction_y_q4_back_up_down, direction_x_q4_back_up_down),
             near_a4,
         )
-        # q5: linear pair in the q4 radius and r23 equations
+        # cosine and sine of q5 from the q4 radius and r23 equations
         cos_q5_back_up = r13_from_q1_back*cos_q23_back_up + r33*sin_q23_back_up
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_back_up_down = nearest_period(offset_a5 + degrees(radius_q4_back_up, cos_q5_back_up), near_a5)
         r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
         scaled_r21_from_q1234_back_up_down = (
@@ -1183,17 +1203,17 @@ class ArrayPrograms(Programs):
         scaled_r22_from_q1234_back_up_down = (
             -direction_x_q4_back_up_down*r22_from_q1_back - direction_y_q4_back_up_down*r12_from_q123_back_up
         )
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_back_up_down = nearest_period(
             offset_a6 + degrees(scaled_r21_from_q1234_back_up_down, scaled_r22_from_q1234_back_up_down),
             near_a6,
         )
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_back_up_up = nearest_period(
             offset_a4 + degrees(direction_y_q4_back_up_up, direction_x_q4_back_up_up),
             near_a4,
         )
-        # A5: its turn
+        # A5: whole turns added
         axis_a5_back_up_up = nearest_period(offset_a5 + degrees(-radius_q4_back_up, cos_q5_back_up), near_a5)
         scaled_r21_from_q1234_back_up_up = (
             -direction_x_q4_back_up_up*r21_from_q1_back - direction_y_q4_back_up_up*r11_from_q123_back_up
@@ -1201,7 +1221,7 @@ class ArrayPrograms(Programs):
         scaled_r22_from_q1234_back_up_up = (
             -direction_x_q4_back_up_up*r22_from_q1_back - direction_y_q4_back_up_up*r12_from_q123_back_up
         )
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_back_up_up = nearest_period(
             offset_a6 + degrees(scaled_r21_from_q1234_back_up_up, scaled_r22_from_q1234_back_up_up),
             near_a6,

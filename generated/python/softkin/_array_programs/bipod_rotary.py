@@ -53,40 +53,41 @@ class ArrayPrograms(Programs):
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
         twice_outer_arm = k.twice_outer_arm
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        pivot_1_y = -inner_arm*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        pivot_2_y = -inner_arm*sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
-        between_centres = root(normal_divisor)
-        # the square of the height over the centres
+        between_centres = root(normal_divisor)  # distance between the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
             *between_centres/normal_divisor
         )
         # the rods do not meet
         require(status, height_square >= -outer_arm_squared_times_rounding, Status.IMPOSSIBLE)
-        foot_x = 0.5*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        foot_y = 0.5*apart_2_y
-        y = foot_y + pivot_1_y + apart_2_x*rise
-        span_1_x = x - tcp_displacement_minus_displacement  # rod 1
+        foot_x = 0.5*centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        height_by_normal = root(height_square/normal_divisor)*assembly_sign  # height, as a multiple of the normal
+        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
+        foot_y = 0.5*centre_1_to_2_y
+        y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal
+        span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
         branch_knee_1 = (span_1_x*sin_a1 - y*cos_a1)/outer_arm
-        span_2_x = tcp_displacement_minus_displacement + x  # rod 2
+        span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
         branch_knee_2 = (-y*cos_a2 - span_2_x*sin_a2)/outer_arm
         return (
             ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_knee_1, branch_knee_2)),
@@ -118,7 +119,7 @@ class ArrayPrograms(Programs):
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
         twice_inner_arm = k.twice_inner_arm
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -129,62 +130,66 @@ class ArrayPrograms(Programs):
         )
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        span_1_x = x - tcp_displacement_minus_displacement  # rod 1
+        span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
         y_squared = y*y
-        effective_a1 = root(y_squared + span_1_x*span_1_x)  # effective length that the angle turns
+        effective_a1 = root(y_squared + span_1_x*span_1_x)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > inner_arm_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_inner_arm  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1*twice_inner_arm  # law of cosines for a1: rod 1
         # 1 - cosine, times the scale
         one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm)*(divisor_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        span_2_x = tcp_displacement_minus_displacement + x  # rod 2
-        effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length that the angle turns
+        span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
+        effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > inner_arm_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_inner_arm  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = divisor_a2*twice_inner_arm  # law of cosines for a2: rod 2
         # 1 - cosine, times the scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm)*(divisor_a2 + inner_arm_plus_outer_arm)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/divisor_a1
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
         sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        pivot_1_y = -inner_arm*sin_a1
         rod_1_y = y - pivot_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (span_2_x*cos_swing_a2 + y*sin_swing_a2)/divisor_a2
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
         rod_2_x = x - pivot_2_x
         sin_a2 = (span_2_x*sin_swing_a2 - y*cos_swing_a2)/divisor_a2
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
+        pivot_2_y = -inner_arm*sin_a2
         rod_2_y = y - pivot_2_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         require(status, type2_arms_aligned >= min_type2_margin, Status.UNREACHABLE)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: whole turns added
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: whole turns added
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -226,7 +231,7 @@ class ArrayPrograms(Programs):
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
         twice_inner_arm = k.twice_inner_arm
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -237,88 +242,102 @@ class ArrayPrograms(Programs):
         )
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        span_1_x = x - tcp_displacement_minus_displacement  # rod 1
+        span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
         y_squared = y*y
-        effective_a1 = root(y_squared + span_1_x*span_1_x)  # effective length that the angle turns
+        effective_a1 = root(y_squared + span_1_x*span_1_x)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > inner_arm_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_inner_arm  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1*twice_inner_arm  # law of cosines for a1: rod 1
         # 1 - cosine, times the scale
         one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm)*(divisor_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        span_2_x = tcp_displacement_minus_displacement + x  # rod 2
-        effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length that the angle turns
+        span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
+        effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > inner_arm_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_inner_arm  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = divisor_a2*twice_inner_arm  # law of cosines for a2: rod 2
         # 1 - cosine, times the scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm)*(divisor_a2 + inner_arm_plus_outer_arm)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1_outward = 2.0*root(sine_square_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1_outward = 2.0*root(sine_square_a1)/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1_outward = (span_1_x*cos_swing_a1 - y*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_outward = tcp_displacement_minus_displacement - inner_arm*cos_a1_outward  # rod 1
+        # rod 1: centre about which it swings
+        pivot_1_x_outward = tcp_displacement_minus_displacement - inner_arm*cos_a1_outward
         rod_1_x_outward = x - pivot_1_x_outward
         sin_a1_outward = (y*cos_swing_a1 + span_1_x*sin_swing_a1_outward)/divisor_a1
-        pivot_1_y_outward = -inner_arm*sin_a1_outward  # rod 1
+        pivot_1_y_outward = -inner_arm*sin_a1_outward
         rod_1_y_outward = y - pivot_1_y_outward
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2_inward = 2.0*root(sine_square_a2)/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_outward = (span_2_x*cos_swing_a2 - y*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_outward = inner_arm*cos_a2_outward - tcp_displacement_minus_displacement  # rod 2
+        # rod 2: centre about which it swings
+        pivot_2_x_outward = inner_arm*cos_a2_outward - tcp_displacement_minus_displacement
         rod_2_x_outward = x - pivot_2_x_outward
         sin_a2_outward = (-y*cos_swing_a2 - span_2_x*sin_swing_a2_inward)/divisor_a2
-        pivot_2_y_outward = -inner_arm*sin_a2_outward  # rod 2
+        pivot_2_y_outward = -inner_arm*sin_a2_outward
         rod_2_y_outward = y - pivot_2_y_outward
         type2_arms_aligned_outward_outward = (
             assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_outward - rod_1_y_outward*rod_2_x_outward)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_outward = select(type2_arms_aligned_outward_outward >= min_type2_margin, 0, 3)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)  # A1: its turn
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        # A1: whole turns added
+        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_inward = (span_2_x*cos_swing_a2 + y*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_inward = inner_arm*cos_a2_inward - tcp_displacement_minus_displacement  # rod 2
+        # rod 2: centre about which it swings
+        pivot_2_x_inward = inner_arm*cos_a2_inward - tcp_displacement_minus_displacement
         rod_2_x_inward = x - pivot_2_x_inward
         sin_a2_inward = (span_2_x*sin_swing_a2_inward - y*cos_swing_a2)/divisor_a2
-        pivot_2_y_inward = -inner_arm*sin_a2_inward  # rod 2
+        pivot_2_y_inward = -inner_arm*sin_a2_inward
         rod_2_y_inward = y - pivot_2_y_inward
         type2_arms_aligned_outward_inward = (
             assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = select(type2_arms_aligned_outward_inward >= min_type2_margin, 0, 3)
-        axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1_inward = (span_1_x*cos_swing_a1 + y*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_inward = tcp_displacement_minus_displacement - inner_arm*cos_a1_inward  # rod 1
+        # rod 1: centre about which it swings
+        pivot_1_x_inward = tcp_displacement_minus_displacement - inner_arm*cos_a1_inward
         rod_1_x_inward = x - pivot_1_x_inward
         sin_a1_inward = (y*cos_swing_a1 - span_1_x*sin_swing_a1_outward)/divisor_a1
-        pivot_1_y_inward = -inner_arm*sin_a1_inward  # rod 1
+        pivot_1_y_inward = -inner_arm*sin_a1_inward
         rod_1_y_inward = y - pivot_1_y_inward
         type2_arms_aligned_inward_outward = (
             assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_outward - rod_1_y_inward*rod_2_x_outward)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_outward = select(type2_arms_aligned_inward_outward >= min_type2_margin, 0, 3)
-        axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)  # A1: its turn
+        # A1: whole turns added
+        axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)
         type2_arms_aligned_inward_inward = (
             assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)
         )

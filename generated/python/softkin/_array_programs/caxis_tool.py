@@ -46,7 +46,7 @@ class ArrayPrograms(OrientationPrograms):
         tool_y = k.tool_y
         tool_z = k.tool_z
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, absolute(axis_c) <= 1e9, Status.BAD_INPUT)
         c = DEGREE*(axis_c - offset_c)
         sin_c = sin(c)
@@ -67,16 +67,17 @@ class ArrayPrograms(OrientationPrograms):
         offset_c = k.offset_c
         single_c = k.single_c
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
+        open_c = select(single_c, mid_c, ref_c)  # C: without a commanded turn, the value nearest to this
         near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
-        axis_c = nearest_period(offset_c + degrees(heading_across, heading_along), near_c)  # C: its turn
+        axis_c = nearest_period(offset_c + degrees(heading_across, heading_along), near_c)  # C: whole turns added
         return (axis_c,), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -97,7 +98,7 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         tool_z = k.tool_z
         status = passed(rotation[0])
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -107,5 +108,5 @@ class ArrayPrograms(OrientationPrograms):
             ),
             Status.BAD_INPUT,
         )
-        flange_along = flange_axis_z*tool_z  # what the flange holds, along the axis that it turns about
+        flange_along = flange_axis_z*tool_z  # the flange's part along the axis about which the flange turns
         return (base_axis_x*flange_along, base_axis_y*flange_along, base_axis_z*flange_along), status

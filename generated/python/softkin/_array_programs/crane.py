@@ -49,7 +49,7 @@ class ArrayPrograms(Programs):
         offset_r = k.offset_r
         offset_theta = k.offset_theta
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_phi) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_theta) <= 1e9),
@@ -70,11 +70,11 @@ class ArrayPrograms(Programs):
         phi = DEGREE*axis_phi_minus_offset_phi
         sin_phi = sin(phi)
         r_times_sin_phi = r*sin_phi
-        x = r_times_sin_phi*cos_theta  # x: affine in the x equation
+        x = r_times_sin_phi*cos_theta  # x from the x equation, which is linear in it
         sin_theta = sin(theta)
-        y = r_times_sin_phi*sin_theta  # y: affine in the y equation
+        y = r_times_sin_phi*sin_theta  # y from the y equation, which is linear in it
         cos_phi = cos(phi)
-        z = r*cos_phi  # z: affine in the z equation
+        z = r*cos_phi  # z from the z equation, which is linear in it
         return ((x, y, z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
@@ -92,7 +92,7 @@ class ArrayPrograms(Programs):
         offset_theta = k.offset_theta
         single_theta = k.single_theta
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -101,17 +101,17 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
         axis_r = offset_r + radius_phi
 
         def elsewhere_direction_x_theta(ref_theta: Real) -> Reals:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_x_theta = cos(free_theta)  # in the singularity: the angle of the reference
             direction_y_theta = sin(free_theta)
             return (direction_x_theta, direction_y_theta)
 
-        direction_x_theta = x  # its reference where it is free
+        direction_x_theta = x  # in the singularity: the angle of the reference
         direction_y_theta = y
         direction_x_theta, direction_y_theta = elsewhere(
             radius_theta > machine_scale_times_free_angle,
@@ -119,19 +119,20 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_theta,
             (ref_theta,),
         )
-        open_theta = select(single_theta, mid_theta, ref_theta)  # Theta: where its turn is open
+        # Theta: without a commanded turn, the value nearest to this
+        open_theta = select(single_theta, mid_theta, ref_theta)
         near_theta = select(turn_theta != 0, 360.0*select(turn_theta > 0, turn_theta - 1, turn_theta), open_theta)
-        # Theta: its turn
+        # Theta: whole turns added
         axis_theta = nearest_period(offset_theta + degrees(direction_y_theta, direction_x_theta), near_theta)
 
         def elsewhere_direction_x_phi(ref_phi: Real) -> Reals:
             free_phi = (ref_phi - offset_phi)*DEGREE
             part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)
-            direction_x_phi = cos(part_of_direction_y_phi)  # its reference where it is free
+            direction_x_phi = cos(part_of_direction_y_phi)  # in the singularity: the angle of the reference
             direction_y_phi = sin(part_of_direction_y_phi)
             return (direction_x_phi, direction_y_phi)
 
-        direction_x_phi = z  # its reference where it is free
+        direction_x_phi = z  # in the singularity: the angle of the reference
         direction_y_phi = radius_theta
         direction_x_phi, direction_y_phi = elsewhere(
             radius_phi > machine_scale_times_free_angle,

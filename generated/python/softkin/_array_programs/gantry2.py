@@ -26,7 +26,7 @@ class ArrayPrograms(Programs):
         offset_x = k.offset_x
         offset_y = k.offset_y
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9), Status.BAD_INPUT)
         joint_x = axis_x - offset_x
         joint_y = axis_y - offset_y
@@ -42,7 +42,7 @@ class ArrayPrograms(Programs):
         offset_x = k.offset_x
         offset_y = k.offset_y
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)

@@ -27,7 +27,7 @@ class ArrayPrograms(Programs):
         offset_y = k.offset_y
         offset_z = k.offset_z
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9) & (absolute(axis_z) <= 1e9),
@@ -48,7 +48,7 @@ class ArrayPrograms(Programs):
         offset_y = k.offset_y
         offset_z = k.offset_z
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         axis_x = offset_x + x
         axis_y = offset_y + y

@@ -46,7 +46,7 @@ class ArrayPrograms(Programs):
         offset_x = k.offset_x
         offset_y = k.offset_y
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_r) <= 1e9) & (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9),
@@ -84,13 +84,14 @@ class ArrayPrograms(Programs):
         offset_y = k.offset_y
         single_r = k.single_r
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(ref_r) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -100,9 +101,9 @@ class ArrayPrograms(Programs):
         axis_x = offset_x + x
         axis_y = offset_y + y
         direction_y_r = direction_r*heading_across
-        open_r = select(single_r, mid_r, ref_r)  # R: where its turn is open
+        open_r = select(single_r, mid_r, ref_r)  # R: without a commanded turn, the value nearest to this
         near_r = select(turn_r != 0, 360.0*select(turn_r > 0, turn_r - 1, turn_r), open_r)
-        axis_r = nearest_period(offset_r + degrees(direction_y_r, heading_along), near_r)  # R: its turn
+        axis_r = nearest_period(offset_r + degrees(direction_y_r, heading_along), near_r)  # R: whole turns added
         return (axis_x, axis_y, axis_r), status
 
     def limits(self, axes: Reals) -> Codes:

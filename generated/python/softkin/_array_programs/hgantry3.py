@@ -27,7 +27,7 @@ class ArrayPrograms(Programs):
         offset_b = k.offset_b
         offset_z = k.offset_z
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_z) <= 1e9),
@@ -50,9 +50,9 @@ class ArrayPrograms(Programs):
         offset_b = k.offset_b
         offset_z = k.offset_z
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         axis_a = a + offset_a
         b = -x - y
         axis_b = b + offset_b

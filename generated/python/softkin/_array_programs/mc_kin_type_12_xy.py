@@ -58,19 +58,19 @@ class ArrayPrograms(Programs):
         link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
         part_of_branch_w = k.part_of_branch_w
+        part_of_foot_fraction = k.part_of_foot_fraction
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_pivot_rear_x = k.part_of_pivot_rear_x
         swap_xy = k.swap_xy
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        pivot_upper_y = -link_length_1*cos_a1
 
         def elsewhere_centre_1_x(pivot_upper_x: Real, pivot_upper_y: Real) -> Reals:
             centre_1_x = pivot_upper_x
@@ -87,20 +87,22 @@ class ArrayPrograms(Programs):
         )
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        # rod rear: centre about which it swings
+        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2
         sin_a2 = sin(a2)
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
+        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y
         centre_2_x = -select(swap_xy, pivot_rear_y, pivot_rear_x)*link_length_2_by_link_length_3
-        apart_2_x = centre_2_x - centre_1_x
+        centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
         centre_2_y = -select(swap_xy, pivot_rear_x, pivot_rear_y)*link_length_2_by_link_length_3
-        apart_2_y = centre_2_y - centre_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        centre_1_to_2_y = centre_2_y - centre_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
-        between_centres = root(normal_divisor)
+        between_centres = root(normal_divisor)  # distance between the centres
         one_by_normal_square = 1.0/normal_divisor
-        # the square of the height over the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
@@ -108,25 +110,26 @@ class ArrayPrograms(Programs):
         )
         # the rods do not meet
         require(status, height_square >= -link_length_2_squared_times_rounding, Status.IMPOSSIBLE)
-        # foot of the height, as a share
-        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = centre_1_x + foot_x - apart_2_y*rise
-        foot_y = along_centres*apart_2_y
-        y = centre_1_y + foot_y + apart_2_x*rise
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5*(normal_divisor + part_of_foot_fraction)*one_by_normal_square
+        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal
+        foot_y = centre_1_to_2_y*foot_fraction
+        y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal
 
         def elsewhere_span_upper_x(x: Real, y: Real) -> Reals:
-            span_upper_x = x  # rod upper
-            span_upper_y = y  # rod upper
+            span_upper_x = x  # rod upper: known part of its vector
+            span_upper_y = y
             return (span_upper_x, span_upper_y)
 
-        span_upper_x = y  # rod upper
-        span_upper_y = x  # rod upper
+        span_upper_x = y  # rod upper: known part of its vector
+        span_upper_y = x
         span_upper_x, span_upper_y = elsewhere(swap_xy, (span_upper_x, span_upper_y), elsewhere_span_upper_x, (x, y))
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
         branch_w = (
             (
                 (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)*cos_a2
@@ -171,7 +174,7 @@ class ArrayPrograms(Programs):
         twice_link_length_1 = k.twice_link_length_1
         twice_link_length_5 = k.twice_link_length_5
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -184,19 +187,19 @@ class ArrayPrograms(Programs):
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
 
         def elsewhere_span_upper_x(x: Real, y: Real) -> Reals:
-            span_upper_x = x  # rod upper
-            span_upper_y = y  # rod upper
+            span_upper_x = x  # rod upper: known part of its vector
+            span_upper_y = y
             return (span_upper_x, span_upper_y)
 
-        span_upper_x = y  # rod upper
-        span_upper_y = x  # rod upper
+        span_upper_x = y  # rod upper: known part of its vector
+        span_upper_y = x
         span_upper_x, span_upper_y = elsewhere(swap_xy, (span_upper_x, span_upper_y), elsewhere_span_upper_x, (x, y))
-        # effective length that the angle turns
+        # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
         require(status, effective_a1 > link_length_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > link_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
+        swing_scale_a1 = divisor_a1*twice_link_length_1  # law of cosines for a1: rod upper
         # 1 - cosine, times the scale
         one_less_cos_a1 = (
             (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
@@ -205,24 +208,26 @@ class ArrayPrograms(Programs):
         one_plus_cos_a1 = (
             (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/divisor_of_cos_a1
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
         along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
         across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         require(status, effective_a2 > link_length_5_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > link_length_5_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_link_length_5  # a2: law of cosines in the rod rear equation
+        swing_scale_a2 = divisor_a2*twice_link_length_5  # law of cosines for a2: rod rear
         # 1 - cosine, times the scale
         one_less_cos_a2 = (
             (divisor_a2 + link_length_4_plus_link_length_5)*(divisor_a2 + link_length_5_minus_link_length_4)
@@ -231,11 +236,11 @@ class ArrayPrograms(Programs):
         one_plus_cos_a2 = (
             (link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4)
         )
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
+        pivot_upper_y = -link_length_1*cos_a1
 
         def elsewhere_centre_1_x(pivot_upper_x: Real, pivot_upper_y: Real) -> Reals:
             centre_1_x = pivot_upper_x
@@ -252,14 +257,17 @@ class ArrayPrograms(Programs):
         )
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        # rod rear: centre about which it swings
+        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2
         sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
+        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y
         centre_2_x = select(swap_xy, -pivot_rear_y, -pivot_rear_x)*link_length_2_by_link_length_3
         rod_2_x = x - centre_2_x
         centre_2_y = select(swap_xy, -pivot_rear_x, -pivot_rear_y)*link_length_2_by_link_length_3
@@ -267,12 +275,12 @@ class ArrayPrograms(Programs):
         type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         require(status, type2_arms_aligned >= min_type2_margin, Status.UNREACHABLE)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: whole turns added
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: whole turns added
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -324,7 +332,7 @@ class ArrayPrograms(Programs):
         twice_link_length_1 = k.twice_link_length_1
         twice_link_length_5 = k.twice_link_length_5
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -337,19 +345,19 @@ class ArrayPrograms(Programs):
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
 
         def elsewhere_span_upper_x(x: Real, y: Real) -> Reals:
-            span_upper_x = x  # rod upper
-            span_upper_y = y  # rod upper
+            span_upper_x = x  # rod upper: known part of its vector
+            span_upper_y = y
             return (span_upper_x, span_upper_y)
 
-        span_upper_x = y  # rod upper
-        span_upper_y = x  # rod upper
+        span_upper_x = y  # rod upper: known part of its vector
+        span_upper_y = x
         span_upper_x, span_upper_y = elsewhere(swap_xy, (span_upper_x, span_upper_y), elsewhere_span_upper_x, (x, y))
-        # effective length that the angle turns
+        # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
         require(status, effective_a1 > link_length_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > link_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
+        swing_scale_a1 = divisor_a1*twice_link_length_1  # law of cosines for a1: rod upper
         # 1 - cosine, times the scale
         one_less_cos_a1 = (
             (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
@@ -358,21 +366,24 @@ class ArrayPrograms(Programs):
         one_plus_cos_a1 = (
             (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1_right = 2.0*root(sine_square_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1_right = 2.0*root(sine_square_a1)/divisor_of_cos_a1
         sin_a1_left = (span_upper_x*cos_swing_a1 - span_upper_y*sin_swing_a1_right)/divisor_a1
-        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
+        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper: centre about which it swings
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1_left = (span_upper_y*cos_swing_a1 + span_upper_x*sin_swing_a1_right)/divisor_a1
-        pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
+        pivot_upper_y_left = -link_length_1*cos_a1_left
         sin_a1_right = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1_right)/divisor_a1
-        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
+        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper: centre about which it swings
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1_right = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1_right)/divisor_a1
-        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
+        pivot_upper_y_right = -link_length_1*cos_a1_right
 
         def elsewhere_centre_1_x_left(
             pivot_upper_x_left: Real, pivot_upper_x_right: Real, pivot_upper_y_left: Real, pivot_upper_y_right: Real,
@@ -393,11 +404,11 @@ class ArrayPrograms(Programs):
             elsewhere_centre_1_x_left,
             (pivot_upper_x_left, pivot_upper_x_right, pivot_upper_y_left, pivot_upper_y_right),
         )
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
         along_a2_left = (link_length_2*span_rear_x - part_of_branch_w*sin_a1_left)/link_length_2
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
         across_a2_left = (part_of_branch_w*cos_a1_left - link_length_2*span_rear_y)/link_length_2
-        # effective length that the angle turns
+        # effective length of the arm that a2 turns
         effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
         divisor_a2_left = select(effective_a2_left > link_length_5_times_shortest_link, effective_a2_left, 1.0)
         # 1 - cosine, times the scale
@@ -408,14 +419,17 @@ class ArrayPrograms(Programs):
         one_plus_cos_a2_left = (
             (link_length_4_plus_link_length_5 - divisor_a2_left)*(divisor_a2_left - link_length_5_minus_link_length_4)
         )
-        both_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left  # twice the scale, with the rounding of its parts
-        sum_a2_left = select(both_a2_left > 0.0, both_a2_left, 1.0)
-        cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left)/sum_a2_left
-        sine_square_a2_left = one_less_cos_a2_left*one_plus_cos_a2_left  # the square of sine times scale
-        sin_swing_a2_left_right = 2.0*root(sine_square_a2_left)/sum_a2_left
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left
+        divisor_of_cos_a2_left = select(sum_of_cos_a2_left > 0.0, sum_of_cos_a2_left, 1.0)
+        cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left)/divisor_of_cos_a2_left
+        sine_square_a2_left = one_less_cos_a2_left*one_plus_cos_a2_left  # sine squared, times the squared scale
+        sin_swing_a2_left_right = 2.0*root(sine_square_a2_left)/divisor_of_cos_a2_left
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_left_left = (across_a2_left*sin_swing_a2_left_right + along_a2_left*cos_swing_a2_left)/divisor_a2_left
         sin_a2_left_left = (across_a2_left*cos_swing_a2_left - along_a2_left*sin_swing_a2_left_right)/divisor_a2_left
-        swing_scale_a2_left = divisor_a2_left*twice_link_length_5  # a2: law of cosines in the rod rear equation
+        swing_scale_a2_left = divisor_a2_left*twice_link_length_5  # law of cosines for a2: rod rear
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_left_right = (along_a2_left*cos_swing_a2_left - across_a2_left*sin_swing_a2_left_right)/divisor_a2_left
         sin_a2_left_right = (across_a2_left*cos_swing_a2_left + along_a2_left*sin_swing_a2_left_right)/divisor_a2_left
 
@@ -426,11 +440,10 @@ class ArrayPrograms(Programs):
 
         rod_1_x_left = x - centre_1_x_left
         rod_1_y_left = y - centre_1_y_left
-        # rod rear
+        # rod rear: centre about which it swings
         pivot_rear_x_left_left = (
             part_of_pivot_rear_x*sin_a1_left - pivot_upper_x_left - link_length_5*cos_a2_left_left
         )
-        # rod rear
         pivot_rear_y_left_left = (
             part_of_pivot_rear_x*cos_a1_left + link_length_5*sin_a2_left_left - pivot_upper_y_left
         )
@@ -447,11 +460,10 @@ class ArrayPrograms(Programs):
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0, 3)
-        # rod rear
+        # rod rear: centre about which it swings
         pivot_rear_x_left_right = (
             part_of_pivot_rear_x*sin_a1_left - pivot_upper_x_left - link_length_5*cos_a2_left_right
         )
-        # rod rear
         pivot_rear_y_left_right = (
             part_of_pivot_rear_x*cos_a1_left + link_length_5*sin_a2_left_right - pivot_upper_y_left
         )
@@ -477,18 +489,18 @@ class ArrayPrograms(Programs):
             elsewhere_refusal_left_left,
             (),
         )
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_left = nearest_period(offset_a1 + degrees(sin_a1_left, cos_a1_left), near_a1)  # A1: its turn
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        axis_a1_left = nearest_period(offset_a1 + degrees(sin_a1_left, cos_a1_left), near_a1)  # A1: whole turns added
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        # A2: its turn
+        # A2: whole turns added
         axis_a2_left_left = nearest_period(offset_a2 + degrees(sin_a2_left_left, cos_a2_left_left), near_a2)
-        # A2: its turn
+        # A2: whole turns added
         axis_a2_left_right = nearest_period(offset_a2 + degrees(sin_a2_left_right, cos_a2_left_right), near_a2)
         along_a2_right = (link_length_2*span_rear_x - part_of_branch_w*sin_a1_right)/link_length_2
         across_a2_right = (part_of_branch_w*cos_a1_right - link_length_2*span_rear_y)/link_length_2
-        # effective length that the angle turns
+        # effective length of the arm that a2 turns
         effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
         divisor_a2_right = select(effective_a2_right > link_length_5_times_shortest_link, effective_a2_right, 1.0)
         # 1 - cosine, times the scale
@@ -501,19 +513,21 @@ class ArrayPrograms(Programs):
             (link_length_4_plus_link_length_5 - divisor_a2_right)
             *(divisor_a2_right - link_length_5_minus_link_length_4)
         )
-        # twice the scale, with the rounding of its parts
-        both_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right
-        sum_a2_right = select(both_a2_right > 0.0, both_a2_right, 1.0)
-        cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/sum_a2_right
-        sine_square_a2_right = one_less_cos_a2_right*one_plus_cos_a2_right  # the square of sine times scale
-        sin_swing_a2_right_right = 2.0*root(sine_square_a2_right)/sum_a2_right
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right
+        divisor_of_cos_a2_right = select(sum_of_cos_a2_right > 0.0, sum_of_cos_a2_right, 1.0)
+        cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/divisor_of_cos_a2_right
+        sine_square_a2_right = one_less_cos_a2_right*one_plus_cos_a2_right  # sine squared, times the squared scale
+        sin_swing_a2_right_right = 2.0*root(sine_square_a2_right)/divisor_of_cos_a2_right
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_right_left = (
             (across_a2_right*sin_swing_a2_right_right + along_a2_right*cos_swing_a2_right)/divisor_a2_right
         )
         sin_a2_right_left = (
             (across_a2_right*cos_swing_a2_right - along_a2_right*sin_swing_a2_right_right)/divisor_a2_right
         )
-        swing_scale_a2_right = divisor_a2_right*twice_link_length_5  # a2: law of cosines in the rod rear equation
+        swing_scale_a2_right = divisor_a2_right*twice_link_length_5  # law of cosines for a2: rod rear
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_right_right = (
             (along_a2_right*cos_swing_a2_right - across_a2_right*sin_swing_a2_right_right)/divisor_a2_right
         )
@@ -528,11 +542,10 @@ class ArrayPrograms(Programs):
 
         rod_1_x_right = x - centre_1_x_right
         rod_1_y_right = y - centre_1_y_right
-        # rod rear
+        # rod rear: centre about which it swings
         pivot_rear_x_right_left = (
             part_of_pivot_rear_x*sin_a1_right - pivot_upper_x_right - link_length_5*cos_a2_right_left
         )
-        # rod rear
         pivot_rear_y_right_left = (
             part_of_pivot_rear_x*cos_a1_right + link_length_5*sin_a2_right_left - pivot_upper_y_right
         )
@@ -549,11 +562,10 @@ class ArrayPrograms(Programs):
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0, 3)
-        # rod rear
+        # rod rear: centre about which it swings
         pivot_rear_x_right_right = (
             part_of_pivot_rear_x*sin_a1_right - pivot_upper_x_right - link_length_5*cos_a2_right_right
         )
-        # rod rear
         pivot_rear_y_right_right = (
             part_of_pivot_rear_x*cos_a1_right + link_length_5*sin_a2_right_right - pivot_upper_y_right
         )
@@ -579,10 +591,11 @@ class ArrayPrograms(Programs):
             elsewhere_refusal_right_left,
             (),
         )
-        axis_a1_right = nearest_period(offset_a1 + degrees(sin_a1_right, cos_a1_right), near_a1)  # A1: its turn
-        # A2: its turn
+        # A1: whole turns added
+        axis_a1_right = nearest_period(offset_a1 + degrees(sin_a1_right, cos_a1_right), near_a1)
+        # A2: whole turns added
         axis_a2_right_left = nearest_period(offset_a2 + degrees(sin_a2_right_left, cos_a2_right_left), near_a2)
-        # A2: its turn
+        # A2: whole turns added
         axis_a2_right_right = nearest_period(offset_a2 + degrees(sin_a2_right_right, cos_a2_right_right), near_a2)
         status_left_left = refused(status, refusal_left_left)
         status_right_left = refused(status, refusal_right_left)

@@ -38,36 +38,36 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        apart_2_y = k.apart_2_y
-        apart_2_y_squared = k.apart_2_y_squared
         arm_length_1 = k.arm_length_1
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
+        centre_1_to_2_y = k.centre_1_to_2_y
+        centre_1_to_2_y_squared = k.centre_1_to_2_y_squared
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
+        part_of_foot_fraction = k.part_of_foot_fraction
         part_of_normal_divisor = k.part_of_normal_divisor
         rail_y_1 = k.rail_y_1
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
         a1 = axis_a1 - offset_a1
-        pivot_1_x = a1 + tcp_offset_1  # rod 1
+        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
         a2 = axis_a2 - offset_a2
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
-        between_centres = root(normal_divisor)
+        between_centres = root(normal_divisor)  # distance between the centres
         one_by_normal_square = 1.0/normal_divisor
-        # the square of the height over the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(between_centres - arm_length_1_plus_arm_length_2)
             *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
@@ -75,16 +75,17 @@ class ArrayPrograms(Programs):
         )
         # the rods do not meet
         require(status, height_square >= -arm_length_1_squared_times_rounding, Status.IMPOSSIBLE)
-        # foot of the height, as a share
-        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        foot_y = along_centres*apart_2_y
-        y = foot_y + rail_y_1 + apart_2_x*rise
-        span_1_x = x - tcp_offset_1  # rod 1
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5*(normal_divisor + part_of_foot_fraction)*one_by_normal_square
+        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
+        foot_y = centre_1_to_2_y*foot_fraction
+        y = foot_y + rail_y_1 + centre_1_to_2_x*height_by_normal
+        span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
         branch_carriage_1 = (span_1_x - a1)/arm_length_1
-        span_2_x = tcp_offset_2 + x  # rod 2
+        span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
         branch_carriage_2 = (a2 - span_2_x)/arm_length_2
         return (
             (
@@ -116,25 +117,25 @@ class ArrayPrograms(Programs):
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        span_1_y = y - rail_y_1  # rod 1
-        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        span_1_y = y - rail_y_1
+        radicand_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        require(status, root_square_a1 >= -arm_length_1_squared_times_rounding, Status.UNREACHABLE)
-        span_2_y = y - rail_y_2  # rod 2
-        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        require(status, radicand_a1 >= -arm_length_1_squared_times_rounding, Status.UNREACHABLE)
+        span_2_y = y - rail_y_2
+        radicand_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        require(status, root_square_a2 >= -arm_length_2_squared_times_rounding, Status.UNREACHABLE)
-        span_1_x = x - tcp_offset_1  # rod 1
-        a1 = span_1_x - root(root_square_a1)*sigma_carriage_1
-        pivot_1_x = a1 + tcp_offset_1  # rod 1
+        require(status, radicand_a2 >= -arm_length_2_squared_times_rounding, Status.UNREACHABLE)
+        span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
+        a1 = span_1_x - root(radicand_a1)*sigma_carriage_1
+        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
-        span_2_x = tcp_offset_2 + x  # rod 2
-        a2 = span_2_x + root(root_square_a2)*sigma_carriage_2
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
+        a2 = span_2_x + root(radicand_a2)*sigma_carriage_2
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         rod_2_x = x - pivot_2_x
         type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -178,40 +179,40 @@ class ArrayPrograms(Programs):
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        span_1_y = y - rail_y_1  # rod 1
-        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        span_1_y = y - rail_y_1
+        radicand_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        require(status, root_square_a1 >= -arm_length_1_squared_times_rounding, Status.UNREACHABLE)
-        span_2_y = y - rail_y_2  # rod 2
-        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        require(status, radicand_a1 >= -arm_length_1_squared_times_rounding, Status.UNREACHABLE)
+        span_2_y = y - rail_y_2
+        radicand_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        require(status, root_square_a2 >= -arm_length_2_squared_times_rounding, Status.UNREACHABLE)
-        span_1_x = x - tcp_offset_1  # rod 1
-        a1_left = span_1_x - root(root_square_a1)
-        pivot_1_x_left = a1_left + tcp_offset_1  # rod 1
+        require(status, radicand_a2 >= -arm_length_2_squared_times_rounding, Status.UNREACHABLE)
+        span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
+        a1_left = span_1_x - root(radicand_a1)
+        pivot_1_x_left = a1_left + tcp_offset_1  # rod 1: centre about which it swings
         rod_1_x_left = x - pivot_1_x_left
-        span_2_x = tcp_offset_2 + x  # rod 2
-        a2_right = span_2_x + root(root_square_a2)
-        pivot_2_x_right = a2_right - tcp_offset_2  # rod 2
+        span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
+        a2_right = span_2_x + root(radicand_a2)
+        pivot_2_x_right = a2_right - tcp_offset_2  # rod 2: centre about which it swings
         rod_2_x_right = x - pivot_2_x_right
         type2_arms_aligned_left_right = part_of_type2_arms_aligned*(rod_1_x_left*span_2_y - rod_2_x_right*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0, 3)
         axis_a1_left = a1_left + offset_a1
         axis_a2_right = a2_right + offset_a2
-        a2_left = span_2_x - root(root_square_a2)
-        pivot_2_x_left = a2_left - tcp_offset_2  # rod 2
+        a2_left = span_2_x - root(radicand_a2)
+        pivot_2_x_left = a2_left - tcp_offset_2  # rod 2: centre about which it swings
         rod_2_x_left = x - pivot_2_x_left
         type2_arms_aligned_left_left = part_of_type2_arms_aligned*(rod_1_x_left*span_2_y - rod_2_x_left*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0, 3)
         axis_a2_left = a2_left + offset_a2
-        a1_right = span_1_x + root(root_square_a1)
-        pivot_1_x_right = a1_right + tcp_offset_1  # rod 1
+        a1_right = span_1_x + root(radicand_a1)
+        pivot_1_x_right = a1_right + tcp_offset_1  # rod 1: centre about which it swings
         rod_1_x_right = x - pivot_1_x_right
         type2_arms_aligned_right_right = part_of_type2_arms_aligned*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate

@@ -50,16 +50,16 @@ class ArrayPrograms(Programs):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        x = link_length_1*cos_a1 + link_length_2*cos_a2  # x: affine in the x equation
+        x = link_length_1*cos_a1 + link_length_2*cos_a2  # x from the x equation, which is linear in it
         sin_a1 = sin(a1)
         sin_a2 = sin(a2)
-        y = link_length_1*sin_a1 + link_length_2*sin_a2  # y: affine in the y equation
+        y = link_length_1*sin_a1 + link_length_2*sin_a2  # y from the y equation, which is linear in it
         sin_a2_from_a1 = -sin(a1 - a2)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (sin_a2_from_a1,)), status
 
@@ -86,7 +86,7 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -97,7 +97,7 @@ class ArrayPrograms(Programs):
         )
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         # 1 - cosine, times the scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
@@ -106,24 +106,26 @@ class ArrayPrograms(Programs):
         one_plus_cos_a2_from_a1 = (
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         )
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
+        # sine squared, times the squared scale
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1
         # a2_from_a1: out of reach
         require(status, sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding, Status.UNREACHABLE)
-        # twice the scale, with the rounding of its parts
-        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
-        sin_a2_from_a1 = 2.0*root(sine_square_a2_from_a1)*sigma_elbow/sum_a2_from_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = select(sum_of_cos_a2_from_a1 > 0.0, sum_of_cos_a2_from_a1, 1.0)
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
+        sin_a2_from_a1 = 2.0*root(sine_square_a2_from_a1)*sigma_elbow/divisor_of_cos_a2_from_a1
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
             return (direction_x_a1, direction_y_a1)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
         arm_across_a1 = link_length_2*sin_a2_from_a1
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1 = arm_across_a1*y + arm_along_a1*x
         direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         direction_x_a1, direction_y_a1 = elsewhere(
@@ -133,13 +135,13 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: whole turns added
         angle_a2_from_a1 = atan2(sin_a2_from_a1, cos_a2_from_a1)
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        # a2: what the sum a2_from_a1 leaves; A2: its turn
+        # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
         axis_a2 = nearest_period(offset_a2 + (angle_a1 + angle_a2_from_a1)/DEGREE, near_a2)
         return (axis_a1, axis_a2), status
 
@@ -189,7 +191,7 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -200,7 +202,7 @@ class ArrayPrograms(Programs):
         )
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         # 1 - cosine, times the scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
@@ -209,31 +211,32 @@ class ArrayPrograms(Programs):
         one_plus_cos_a2_from_a1 = (
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         )
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
+        # sine squared, times the squared scale
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1
         # a2_from_a1: out of reach
         require(status, sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding, Status.UNREACHABLE)
-        # twice the scale, with the rounding of its parts
-        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
-        sin_a2_from_a1_right = 2.0*root(sine_square_a2_from_a1)/sum_a2_from_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = select(sum_of_cos_a2_from_a1 > 0.0, sum_of_cos_a2_from_a1, 1.0)
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
+        sin_a2_from_a1_right = 2.0*root(sine_square_a2_from_a1)/divisor_of_cos_a2_from_a1
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_a1_right = cos(free_a1)
             direction_y_a1_right = sin(free_a1)
-            # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_a1_left = direction_x_a1_right
             direction_y_a1_left = direction_y_a1_right
             return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
         arm_across_a1_right = link_length_2*sin_a2_from_a1_right
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
         direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
         direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
@@ -243,18 +246,18 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: whole turns added
         angle_a2_from_a1_right = atan2(sin_a2_from_a1_right, cos_a2_from_a1)
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        # a2: what the sum a2_from_a1 leaves; A2: its turn
+        # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
         axis_a2_right = nearest_period(offset_a2 + (angle_a1_right + angle_a2_from_a1_right)/DEGREE, near_a2)
         angle_a1_left = atan2(direction_y_a1_left, direction_x_a1_left)
-        axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
+        axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: whole turns added
         angle_a2_from_a1_left = atan2(-sin_a2_from_a1_right, cos_a2_from_a1)
-        # a2: what the sum a2_from_a1 leaves; A2: its turn
+        # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
         axis_a2_left = nearest_period(offset_a2 + (angle_a1_left + angle_a2_from_a1_left)/DEGREE, near_a2)
         return (
             ((axis_a1_right, axis_a2_right), status),

@@ -46,7 +46,7 @@ class ArrayPrograms(Programs):
         offset_c = k.offset_c
         offset_r = k.offset_r
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_c) <= 1e9) & (absolute(axis_r) <= 1e9), Status.BAD_INPUT)
         r = axis_r - offset_r
         # R where the machine has no pose
@@ -73,7 +73,7 @@ class ArrayPrograms(Programs):
         offset_r = k.offset_r
         single_c = k.single_c
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(ref_c) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9),
@@ -81,15 +81,15 @@ class ArrayPrograms(Programs):
         )
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)  # its reference where it is free
+            direction_x_c = cos(free_c)  # in the singularity: the angle of the reference
             direction_y_c = sin(free_c)
             return (direction_x_c, direction_y_c)
 
-        direction_x_c = x  # its reference where it is free
+        direction_x_c = x  # in the singularity: the angle of the reference
         direction_y_c = y
         direction_x_c, direction_y_c = elsewhere(
             radius_c > machine_scale_times_free_angle,
@@ -97,9 +97,9 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_c,
             (ref_c,),
         )
-        open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
+        open_c = select(single_c, mid_c, ref_c)  # C: without a commanded turn, the value nearest to this
         near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
-        axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
+        axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: whole turns added
         axis_r = offset_r + radius_c
         return (axis_c, axis_r), status
 

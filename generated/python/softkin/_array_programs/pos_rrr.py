@@ -58,7 +58,7 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
@@ -138,7 +138,7 @@ class ArrayPrograms(Programs):
         swing_scale_q3_2_squared_times_rounding = k.swing_scale_q3_2_squared_times_rounding
         twice_d3 = k.twice_d3
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -147,31 +147,32 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(x*x + y*y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
-        wrist_y_from_q1 = z - d1  # what the unknown links must span
+        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = root(ahead_squared_q1)*sigma_arm
         wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
-        # a later step needs this of q1: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q1_for_q3 = (
             wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
             - a2_squared_plus_effective_q3_2_squared
         )
-        rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+        rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
 
         def elsewhere_turn_q1_for_q3() -> Reals:
-            turn_q1_for_q3 = 0.0  # to the boundary of the later step
+            turn_q1_for_q3 = 0.0  # turn of q1 to the bound, to first order
             return (turn_q1_for_q3,)
 
         excess_q1_for_q3 = select(
             value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3_2, size_q1_for_q3_2 + value_q1_for_q3,
         )
-        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
+        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # turn of q1 to the bound, to first order
         (turn_q1_for_q3,) = elsewhere(
             absolute(rate_q1_for_q3) > size_q1_for_q3_2_times_rounding,
             (turn_q1_for_q3,),
@@ -184,11 +185,12 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3 = cos(free_a1)  # its reference where it is free
+            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/distance_q1_squared
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
@@ -203,9 +205,9 @@ class ArrayPrograms(Programs):
         turned_sin_q1_for_q3 = (
             one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
         )
-        # what is left of its own equation
+        # residual of the equation of q1
         turned_cost_q1_for_q3 = absolute(d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
-        # turned within rounding, where the rest can be reached
+        # turned, within rounding, to where q3 has a solution
         ahead_q1 = select(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             ahead_q1_before_q1_for_q3,
@@ -218,13 +220,14 @@ class ArrayPrograms(Programs):
                 ),
             ),
         )
-        wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
+        wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
         # 1 - cosine, times the scale
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
         # q3: out of reach
         require(status, sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding, Status.UNREACHABLE)
 
@@ -239,12 +242,12 @@ class ArrayPrograms(Programs):
             ) -> Reals:
 
                 def elsewhere_cos_q1(turned_cos_q1_for_q3: Real, turned_sin_q1_for_q3: Real) -> Reals:
-                    cos_q1 = turned_cos_q1_for_q3  # turned within rounding, where the rest can be reached
-                    sin_q1 = turned_sin_q1_for_q3  # turned within rounding, where the rest can be reached
+                    cos_q1 = turned_cos_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                    sin_q1 = turned_sin_q1_for_q3  # turned, within rounding, to where q3 has a solution
                     return (cos_q1, sin_q1)
 
-                cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-                sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+                cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+                sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
                 cos_q1, sin_q1 = elsewhere(
                     turned_cost_q1_for_q3 > machine_scale_times_rounding,
                     (cos_q1, sin_q1),
@@ -253,8 +256,8 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q1, sin_q1)
 
-            cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-            sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+            cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+            sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
             cos_q1, sin_q1 = elsewhere(
                 absolute(value_q1_for_q3) <= size_q1_for_q3_2,
                 (cos_q1, sin_q1),
@@ -266,8 +269,8 @@ class ArrayPrograms(Programs):
             )
             return (cos_q1, sin_q1)
 
-        cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
-        sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+        cos_q1 = cos_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
+        sin_q1 = sin_q1_before_q1_for_q3  # turned, within rounding, to where q3 has a solution
         cos_q1, sin_q1 = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (cos_q1, sin_q1),
@@ -277,24 +280,25 @@ class ArrayPrograms(Programs):
                 turned_sin_q1_for_q3, value_q1_for_q3,
             ),
         )
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = select(both_q3 > 0.0, both_q3, 1.0)
-        sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = select(sum_of_cos_q3 > 0.0, sum_of_cos_q3, 1.0)
+        sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
             return (direction_x_q2, direction_y_q2)
 
         arm_along_q2 = -effective_q3_2*sin_swing_q3
         arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
         direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         direction_x_q2, direction_y_q2 = elsewhere(
@@ -303,14 +307,16 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_q2,
             (ref_a2,),
         )
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(offset_a2 + degrees(direction_y_q2, direction_x_q2), near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2 = nearest_period(offset_a2 + degrees(direction_y_q2, direction_x_q2), near_a2)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3 = a3_by_effective_q3_2*cos_swing_q3 - d4_by_effective_q3_2*sin_swing_q3
         sin_q3 = a3_by_effective_q3_2*sin_swing_q3 + d4_by_effective_q3_2*cos_swing_q3
-        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: whole turns added
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -368,7 +374,7 @@ class ArrayPrograms(Programs):
         swing_scale_q3_2_squared_times_rounding = k.swing_scale_q3_2_squared_times_rounding
         twice_d3 = k.twice_d3
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -377,32 +383,33 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(x*x + y*y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
-        wrist_y_from_q1 = z - d1  # what the unknown links must span
+        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3_front = root(ahead_squared_q1)
         wrist_x_from_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front - a1
-        # a later step needs this of q1: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q1_for_q3_front = (
             wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3_front*wrist_x_from_q1_before_q1_for_q3_front
             - a2_squared_plus_effective_q3_2_squared
         )
-        rate_q1_for_q3_front = -twice_d3*wrist_x_from_q1_before_q1_for_q3_front  # how it changes with q1
+        rate_q1_for_q3_front = -twice_d3*wrist_x_from_q1_before_q1_for_q3_front  # its derivative by q1
 
         def elsewhere_turn_q1_for_q3_front() -> Reals:
-            turn_q1_for_q3_front = 0.0  # to the boundary of the later step
+            turn_q1_for_q3_front = 0.0  # turn of q1 to the bound, to first order
             return (turn_q1_for_q3_front,)
 
         excess_q1_for_q3_front = select(
             value_q1_for_q3_front > 0.0, value_q1_for_q3_front - size_q1_for_q3_2,
             size_q1_for_q3_2 + value_q1_for_q3_front,
         )
-        turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # to the boundary of the later step
+        turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # turn of q1 to the bound, to first order
         (turn_q1_for_q3_front,) = elsewhere(
             absolute(rate_q1_for_q3_front) > size_q1_for_q3_2_times_rounding,
             (turn_q1_for_q3_front,),
@@ -412,19 +419,21 @@ class ArrayPrograms(Programs):
 
         def elsewhere_cos_q1_before_q1_for_q3_front(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_before_q1_for_q3_front = cos(free_a1)  # its reference where it is free
+            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            cos_q1_before_q1_for_q3_front = cos(free_a1)
             sin_q1_before_q1_for_q3_front = sin(free_a1)
-            cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front  # its reference where it is free
+            # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
+            cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
             return (
                 cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back,
                 sin_q1_before_q1_for_q3_back,
             )
 
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*x - d3*y)/distance_q1_squared
         sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*y + d3*x)/distance_q1_squared
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front*x - d3*y)/distance_q1_squared
         sin_q1_before_q1_for_q3_back = (d3*x - ahead_q1_before_q1_for_q3_front*y)/distance_q1_squared
         found = elsewhere(
@@ -466,20 +475,20 @@ class ArrayPrograms(Programs):
                     one_by_turned_length_q1_for_q3_front
                     *(sin_q1_before_q1_for_q3_front + turn_q1_for_q3_front*cos_q1_before_q1_for_q3_front)
                 )
-                # what is left of its own equation
+                # residual of the equation of q1
                 turned_cost_q1_for_q3_front = absolute(d3 + turned_cos_q1_for_q3_front*y - turned_sin_q1_for_q3_front*x)
 
                 def elsewhere_ahead_q1_front(
                     turned_ahead_q1_for_q3_front: Real, turned_cos_q1_for_q3_front: Real, turned_sin_q1_for_q3_front: Real,
                 ) -> Reals:
-                    ahead_q1_front = turned_ahead_q1_for_q3_front  # turned within rounding, where the rest can be reached
-                    cos_q1_front = turned_cos_q1_for_q3_front  # turned within rounding, where the rest can be reached
-                    sin_q1_front = turned_sin_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                    ahead_q1_front = turned_ahead_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                    cos_q1_front = turned_cos_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                    sin_q1_front = turned_sin_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
                     return (ahead_q1_front, cos_q1_front, sin_q1_front)
 
-                ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-                cos_q1_front = cos_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-                sin_q1_front = sin_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
                 ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
                     turned_cost_q1_for_q3_front > machine_scale_times_rounding,
                     (ahead_q1_front, cos_q1_front, sin_q1_front),
@@ -488,9 +497,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_front, cos_q1_front, sin_q1_front)
 
-            ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-            cos_q1_front = cos_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-            sin_q1_front = sin_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+            ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+            cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+            sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
             ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
                 absolute(value_q1_for_q3_front) <= size_q1_for_q3_2,
                 (ahead_q1_front, cos_q1_front, sin_q1_front),
@@ -501,7 +510,7 @@ class ArrayPrograms(Programs):
                 ),
             )
             wrist_x_from_q1_before_q1_for_q3_back = -a1 - ahead_q1_before_q1_for_q3_front
-            # a later step needs this of q1: no larger in size than
+            # q3 has solutions where this is within its bound
             value_q1_for_q3_back = (
                 wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3_back*wrist_x_from_q1_before_q1_for_q3_back
                 - a2_squared_plus_effective_q3_2_squared
@@ -512,17 +521,17 @@ class ArrayPrograms(Programs):
                 sin_q1_before_q1_for_q3_back: Real, value_q1_for_q3_back: Real,
                 wrist_x_from_q1_before_q1_for_q3_back: Real, x: Real, y: Real,
             ) -> Reals:
-                rate_q1_for_q3_back = -twice_d3*wrist_x_from_q1_before_q1_for_q3_back  # how it changes with q1
+                rate_q1_for_q3_back = -twice_d3*wrist_x_from_q1_before_q1_for_q3_back  # its derivative by q1
 
                 def elsewhere_turn_q1_for_q3_back() -> Reals:
-                    turn_q1_for_q3_back = 0.0  # to the boundary of the later step
+                    turn_q1_for_q3_back = 0.0  # turn of q1 to the bound, to first order
                     return (turn_q1_for_q3_back,)
 
                 excess_q1_for_q3_back = select(
                     value_q1_for_q3_back > 0.0, value_q1_for_q3_back - size_q1_for_q3_2,
                     size_q1_for_q3_2 + value_q1_for_q3_back,
                 )
-                turn_q1_for_q3_back = -excess_q1_for_q3_back/rate_q1_for_q3_back  # to the boundary of the later step
+                turn_q1_for_q3_back = -excess_q1_for_q3_back/rate_q1_for_q3_back  # turn of q1 to the bound, to first order
                 (turn_q1_for_q3_back,) = elsewhere(
                     absolute(rate_q1_for_q3_back) > size_q1_for_q3_2_times_rounding,
                     (turn_q1_for_q3_back,),
@@ -539,7 +548,7 @@ class ArrayPrograms(Programs):
                     one_by_turned_length_q1_for_q3_back
                     *(sin_q1_before_q1_for_q3_back + turn_q1_for_q3_back*cos_q1_before_q1_for_q3_back)
                 )
-                # what is left of its own equation
+                # residual of the equation of q1
                 turned_cost_q1_for_q3_back = absolute(d3 + turned_cos_q1_for_q3_back*y - turned_sin_q1_for_q3_back*x)
 
                 def elsewhere_ahead_q1_back(
@@ -550,14 +559,14 @@ class ArrayPrograms(Programs):
                         (-ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_back)
                         *one_by_turned_length_q1_for_q3_back
                     )
-                    ahead_q1_back = turned_ahead_q1_for_q3_back  # turned within rounding, where the rest can be reached
-                    cos_q1_back = turned_cos_q1_for_q3_back  # turned within rounding, where the rest can be reached
-                    sin_q1_back = turned_sin_q1_for_q3_back  # turned within rounding, where the rest can be reached
+                    ahead_q1_back = turned_ahead_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+                    cos_q1_back = turned_cos_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+                    sin_q1_back = turned_sin_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
                     return (ahead_q1_back, cos_q1_back, sin_q1_back)
 
-                ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-                cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
-                sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+                ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+                cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+                sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
                 ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
                     turned_cost_q1_for_q3_back > machine_scale_times_rounding,
                     (ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -569,9 +578,9 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_back, cos_q1_back, sin_q1_back)
 
-            ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-            cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
-            sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+            ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+            cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+            sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
             ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
                 absolute(value_q1_for_q3_back) <= size_q1_for_q3_2,
                 (ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -583,12 +592,12 @@ class ArrayPrograms(Programs):
             )
             return (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back)
 
-        ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-        cos_q1_front = cos_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-        sin_q1_front = sin_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-        ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
-        cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
-        sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+        ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+        cos_q1_front = cos_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+        sin_q1_front = sin_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+        ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned, within rounding, to where q3 has a solution
+        cos_q1_back = cos_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
+        sin_q1_back = sin_q1_before_q1_for_q3_back  # turned, within rounding, to where q3 has a solution
         ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back),
@@ -599,30 +608,32 @@ class ArrayPrograms(Programs):
                 value_q1_for_q3_front, wrist_y_from_q1_squared, x, y,
             ),
         )
-        wrist_x_from_q1_front = ahead_q1_front - a1  # what the unknown links must span
+        wrist_x_from_q1_front = ahead_q1_front - a1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach_front = root(wrist_y_from_q1_squared + wrist_x_from_q1_front*wrist_x_from_q1_front)
         # 1 - cosine, times the scale
         one_less_cos_q3_front = (a2_plus_effective_q3_2 + reach_front)*(a2_plus_effective_q3_2 - reach_front)
         # 1 + cosine, times the scale
         one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_front)
-        sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front  # the square of sine times scale
+        sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front  # sine squared, times the squared scale
         # q3: out of reach
         refusal_front = select(sine_square_q3_front >= -swing_scale_q3_2_squared_times_rounding, 0, 3)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
-        # twice the scale, with the rounding of its parts
-        both_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
-        sum_q3_front = select(both_q3_front > 0.0, both_q3_front, 1.0)
-        sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/sum_q3_front
-        cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/sum_q3_front
+        # A1: whole turns added
+        axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
+        divisor_of_cos_q3_front = select(sum_of_cos_q3_front > 0.0, sum_of_cos_q3_front, 1.0)
+        sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/divisor_of_cos_q3_front
+        cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/divisor_of_cos_q3_front
 
         def elsewhere_direction_x_q2_front_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_front_down = cos(free_a2)
             direction_y_q2_front_down = sin(free_a2)
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_front_up = direction_x_q2_front_down
             direction_y_q2_front_up = direction_y_q2_front_down
             return (
@@ -631,14 +642,14 @@ class ArrayPrograms(Programs):
 
         arm_along_q2_front_down = effective_q3_2*sin_swing_q3_front_up
         arm_across_q2_front = a2 + effective_q3_2*cos_swing_q3_front
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_front_down = (
             arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
         )
         direction_y_q2_front_down = (
             arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
         )
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
         direction_y_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
         found = elsewhere(
@@ -648,59 +659,63 @@ class ArrayPrograms(Programs):
             (ref_a2,),
         )
         direction_x_q2_front_down, direction_y_q2_front_down, direction_x_q2_front_up, direction_y_q2_front_up = found
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        # A2: its turn
+        # A2: whole turns added
         axis_a2_front_down = nearest_period(
             offset_a2 + degrees(direction_y_q2_front_down, direction_x_q2_front_down),
             near_a2,
         )
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_front_down = a3_by_effective_q3_2*cos_swing_q3_front + d4_by_effective_q3_2*sin_swing_q3_front_up
         sin_q3_front_down = d4_by_effective_q3_2*cos_swing_q3_front - a3_by_effective_q3_2*sin_swing_q3_front_up
-        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        # A3: its turn
+        # A3: whole turns added
         axis_a3_front_down = nearest_period(offset_a3 + degrees(sin_q3_front_down, cos_q3_front_down), near_a3)
-        # A2: its turn
+        # A2: whole turns added
         axis_a2_front_up = nearest_period(
             offset_a2 + degrees(direction_y_q2_front_up, direction_x_q2_front_up),
             near_a2,
         )
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_front_up = a3_by_effective_q3_2*cos_swing_q3_front - d4_by_effective_q3_2*sin_swing_q3_front_up
         sin_q3_front_up = a3_by_effective_q3_2*sin_swing_q3_front_up + d4_by_effective_q3_2*cos_swing_q3_front
-        # A3: its turn
+        # A3: whole turns added
         axis_a3_front_up = nearest_period(offset_a3 + degrees(sin_q3_front_up, cos_q3_front_up), near_a3)
-        wrist_x_from_q1_back = ahead_q1_back - a1  # what the unknown links must span
+        wrist_x_from_q1_back = ahead_q1_back - a1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach_back = root(wrist_y_from_q1_squared + wrist_x_from_q1_back*wrist_x_from_q1_back)
         # 1 - cosine, times the scale
         one_less_cos_q3_back = (a2_plus_effective_q3_2 + reach_back)*(a2_plus_effective_q3_2 - reach_back)
         # 1 + cosine, times the scale
         one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_back)
-        sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back  # the square of sine times scale
+        sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back  # sine squared, times the squared scale
         # q3: out of reach
         refusal_back = select(sine_square_q3_back >= -swing_scale_q3_2_squared_times_rounding, 0, 3)
-        axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
-        both_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back  # twice the scale, with the rounding of its parts
-        sum_q3_back = select(both_q3_back > 0.0, both_q3_back, 1.0)
-        sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/sum_q3_back
-        cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/sum_q3_back
+        axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: whole turns added
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back
+        divisor_of_cos_q3_back = select(sum_of_cos_q3_back > 0.0, sum_of_cos_q3_back, 1.0)
+        sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/divisor_of_cos_q3_back
+        cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back
 
         def elsewhere_direction_x_q2_back_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_back_down = cos(free_a2)
             direction_y_q2_back_down = sin(free_a2)
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_q2_back_up = direction_x_q2_back_down
             direction_y_q2_back_up = direction_y_q2_back_down
             return (direction_x_q2_back_down, direction_y_q2_back_down, direction_x_q2_back_up, direction_y_q2_back_up)
 
         arm_along_q2_back_down = effective_q3_2*sin_swing_q3_back_up
         arm_across_q2_back = a2 + effective_q3_2*cos_swing_q3_back
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
         direction_y_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
         direction_y_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
         found = elsewhere(
@@ -710,20 +725,23 @@ class ArrayPrograms(Programs):
             (ref_a2,),
         )
         direction_x_q2_back_down, direction_y_q2_back_down, direction_x_q2_back_up, direction_y_q2_back_up = found
-        # A2: its turn
+        # A2: whole turns added
         axis_a2_back_down = nearest_period(
             offset_a2 + degrees(direction_y_q2_back_down, direction_x_q2_back_down),
             near_a2,
         )
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_back_down = a3_by_effective_q3_2*cos_swing_q3_back + d4_by_effective_q3_2*sin_swing_q3_back_up
         sin_q3_back_down = d4_by_effective_q3_2*cos_swing_q3_back - a3_by_effective_q3_2*sin_swing_q3_back_up
-        # A3: its turn
+        # A3: whole turns added
         axis_a3_back_down = nearest_period(offset_a3 + degrees(sin_q3_back_down, cos_q3_back_down), near_a3)
-        # A2: its turn
+        # A2: whole turns added
         axis_a2_back_up = nearest_period(offset_a2 + degrees(direction_y_q2_back_up, direction_x_q2_back_up), near_a2)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_back_up = a3_by_effective_q3_2*cos_swing_q3_back - d4_by_effective_q3_2*sin_swing_q3_back_up
         sin_q3_back_up = a3_by_effective_q3_2*sin_swing_q3_back_up + d4_by_effective_q3_2*cos_swing_q3_back
-        axis_a3_back_up = nearest_period(offset_a3 + degrees(sin_q3_back_up, cos_q3_back_up), near_a3)  # A3: its turn
+        # A3: whole turns added
+        axis_a3_back_up = nearest_period(offset_a3 + degrees(sin_q3_back_up, cos_q3_back_up), near_a3)
         status_front = refused(status, refusal_front)
         status_back = refused(status, refusal_back)
         return (

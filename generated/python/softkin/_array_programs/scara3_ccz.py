@@ -51,7 +51,7 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
@@ -93,7 +93,7 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -102,28 +102,30 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         # 1 - cosine, times the scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
             return (direction_x_a1, direction_y_a1)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2
         arm_across_a1 = link_length_2*sin_a2
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1 = arm_across_a1*y + arm_along_a1*x
         direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         direction_x_a1, direction_y_a1 = elsewhere(
@@ -132,12 +134,13 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_a1,
             (ref_a1,),
         )
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + degrees(direction_y_a1, direction_x_a1), near_a1)  # A1: its turn
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        # A1: whole turns added
+        axis_a1 = nearest_period(offset_a1 + degrees(direction_y_a1, direction_x_a1), near_a1)
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: whole turns added
         axis_a3 = offset_a3 + z
         return (axis_a1, axis_a2, axis_a3), status
 
@@ -182,7 +185,7 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -191,35 +194,36 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         # 1 - cosine, times the scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2_right = 2.0*root(sine_square_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2_right = 2.0*root(sine_square_a2)/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_a1_right = cos(free_a1)
             direction_y_a1_right = sin(free_a1)
-            # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_a1_left = direction_x_a1_right
             direction_y_a1_left = direction_y_a1_right
             return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2
         arm_across_a1_right = link_length_2*sin_a2_right
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
         direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
         direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
@@ -228,17 +232,17 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_a1_right,
             (ref_a1,),
         )
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        # A1: its turn
+        # A1: whole turns added
         axis_a1_right = nearest_period(offset_a1 + degrees(direction_y_a1_right, direction_x_a1_right), near_a1)
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2_right = nearest_period(offset_a2 + degrees(sin_a2_right, cos_a2), near_a2)  # A2: its turn
+        axis_a2_right = nearest_period(offset_a2 + degrees(sin_a2_right, cos_a2), near_a2)  # A2: whole turns added
         axis_a3 = offset_a3 + z
-        # A1: its turn
+        # A1: whole turns added
         axis_a1_left = nearest_period(offset_a1 + degrees(direction_y_a1_left, direction_x_a1_left), near_a1)
-        axis_a2_left = nearest_period(offset_a2 + degrees(-sin_a2_right, cos_a2), near_a2)  # A2: its turn
+        axis_a2_left = nearest_period(offset_a2 + degrees(-sin_a2_right, cos_a2), near_a2)  # A2: whole turns added
         return (
             ((axis_a1_right, axis_a2_right, axis_a3), status),
             ((axis_a1_left, axis_a2_left, axis_a3), status),

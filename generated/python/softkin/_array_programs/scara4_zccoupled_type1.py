@@ -53,7 +53,7 @@ class ArrayPrograms(Programs):
         offset_a4 = k.offset_a4
         part_of_z = k.part_of_z
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -111,7 +111,7 @@ class ArrayPrograms(Programs):
         single_a2 = k.single_a2
         single_a4 = k.single_a4
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -120,33 +120,36 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         # 1 - cosine, times the scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
             return (direction_x_a1, direction_y_a1)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2
         arm_across_a1 = link_length_2*sin_a2
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1 = arm_across_a1*y + arm_along_a1*x
         direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         direction_x_a1, direction_y_a1 = elsewhere(
@@ -156,20 +159,20 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: whole turns added
         angle_a2 = atan2(sin_a2, cos_a2)
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(offset_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + angle_a2/DEGREE, near_a2)  # A2: whole turns added
         angle_heading = atan2(heading_across, heading_along)
-        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4 = nearest_period(offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE, near_a4)
-        a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*part_of_z  # a3: affine in the z equation
+        a4 = DEGREE*(axis_a4 - offset_a4)  # A4: joint value with its whole turns
+        a3 = z + a4*part_of_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
 
@@ -223,7 +226,7 @@ class ArrayPrograms(Programs):
         single_a2 = k.single_a2
         single_a4 = k.single_a4
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -232,40 +235,42 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         # 1 - cosine, times the scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2_right = 2.0*root(sine_square_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2_right = 2.0*root(sine_square_a2)/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_a1_right = cos(free_a1)
             direction_y_a1_right = sin(free_a1)
-            # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_a1_left = direction_x_a1_right
             direction_y_a1_left = direction_y_a1_right
             return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2
         arm_across_a1_right = link_length_2*sin_a2_right
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
         direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
         direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
@@ -275,29 +280,29 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: whole turns added
         angle_a2_right = atan2(sin_a2_right, cos_a2)
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2_right = nearest_period(offset_a2 + angle_a2_right/DEGREE, near_a2)  # A2: its turn
+        axis_a2_right = nearest_period(offset_a2 + angle_a2_right/DEGREE, near_a2)  # A2: whole turns added
         angle_heading = atan2(heading_across, heading_along)
-        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4_right = nearest_period(offset_a4 + (angle_heading - angle_a1_right - angle_a2_right)/DEGREE, near_a4)
-        a4_right = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        a3_right = z + a4_right*part_of_z  # a3: affine in the z equation
+        a4_right = DEGREE*(axis_a4_right - offset_a4)  # A4: joint value with its whole turns
+        a3_right = z + a4_right*part_of_z  # a3 from the z equation, which is linear in it
         axis_a3_right = a3_right + offset_a3
         angle_a1_left = atan2(direction_y_a1_left, direction_x_a1_left)
-        axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
+        axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: whole turns added
         angle_a2_left = atan2(-sin_a2_right, cos_a2)
-        axis_a2_left = nearest_period(offset_a2 + angle_a2_left/DEGREE, near_a2)  # A2: its turn
-        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        axis_a2_left = nearest_period(offset_a2 + angle_a2_left/DEGREE, near_a2)  # A2: whole turns added
+        # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4_left = nearest_period(offset_a4 + (angle_heading - angle_a1_left - angle_a2_left)/DEGREE, near_a4)
-        a4_left = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3_left = z + a4_left*part_of_z  # a3: affine in the z equation
+        a4_left = DEGREE*(axis_a4_left - offset_a4)  # A4: joint value with its whole turns
+        a3_left = z + a4_left*part_of_z  # a3 from the z equation, which is linear in it
         axis_a3_left = a3_left + offset_a3
         return (
             ((axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right), status),

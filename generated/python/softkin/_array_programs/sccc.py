@@ -56,7 +56,7 @@ class ArrayPrograms(Programs):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
@@ -115,7 +115,7 @@ class ArrayPrograms(Programs):
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -124,7 +124,8 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -133,31 +134,33 @@ class ArrayPrograms(Programs):
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
         cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        wrist_y = y - link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
         # 1 - cosine, times the scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+            direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
             return (direction_x_a1, direction_y_a1)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2
         arm_across_a1 = link_length_2*sin_a2
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
         direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
         direction_x_a1, direction_y_a1 = elsewhere(
@@ -167,9 +170,9 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: whole turns added
         angle_a2 = atan2(sin_a2, cos_a2)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
         part_of_axis_a2 = offset_a2 - motor_a1*part_of_open_a2
@@ -178,7 +181,8 @@ class ArrayPrograms(Programs):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
-            open_a2 = select(single_a2, mid_a2, part_of_axis_a2 + free_a2/DEGREE)  # A2: where its turn is open
+            # A2: without a commanded turn, the value nearest to this
+            open_a2 = select(single_a2, mid_a2, part_of_axis_a2 + free_a2/DEGREE)
             near_a2 = open_a2
             return (near_a2,)
 
@@ -189,7 +193,7 @@ class ArrayPrograms(Programs):
             elsewhere_near_a2,
             (part_of_axis_a2, ref_a1, ref_a2, single_a2),
         )
-        axis_a2 = nearest_period(part_of_axis_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(part_of_axis_a2 + angle_a2/DEGREE, near_a2)  # A2: whole turns added
         angle_heading = atan2(sin_heading, cos_heading)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         part_of_axis_a3 = -coupling_13*motor_a1 - coupling_23*motor_a2
@@ -203,10 +207,11 @@ class ArrayPrograms(Programs):
             def elsewhere_open_a3(free_a1: Real, part_of_axis_a3: Real, ref_a3: Real, ref_motor_a2: Real) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE  # A3: where its turn is open
+                # A3: without a commanded turn, the value nearest to this
+                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE
                 return (open_a3,)
 
-            open_a3 = mid_a3  # A3: where its turn is open
+            open_a3 = mid_a3  # A3: without a commanded turn, the value nearest to this
             (open_a3,) = elsewhere(
                 single_a3,
                 (open_a3,),
@@ -223,7 +228,7 @@ class ArrayPrograms(Programs):
             elsewhere_near_a3,
             (part_of_axis_a3, ref_a1, ref_a2, ref_a3, single_a3),
         )
-        # a3: what the sum a123 leaves; A3: its turn
+        # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3 = nearest_period(offset_a3 + (angle_heading + part_of_axis_a3 - angle_a1 - angle_a2)/DEGREE, near_a3)
         return (axis_a1, axis_a2, axis_a3), status
 
@@ -298,7 +303,7 @@ class ArrayPrograms(Programs):
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -307,7 +312,8 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -316,38 +322,39 @@ class ArrayPrograms(Programs):
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
         cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        wrist_y = y - link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
         # 1 - cosine, times the scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2_right = 2.0*root(sine_square_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2_right = 2.0*root(sine_square_a2)/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_a1_right = cos(free_a1)
             direction_y_a1_right = sin(free_a1)
-            # a1: linear pair in the x and y equations; its reference where it is free
+            # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
             direction_x_a1_left = direction_x_a1_right
             direction_y_a1_left = direction_y_a1_right
             return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
 
         arm_along_a1 = link_length_1 + link_length_2*cos_a2
         arm_across_a1_right = link_length_2*sin_a2_right
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
         direction_y_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y
         direction_y_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
@@ -357,14 +364,14 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: whole turns added
         angle_a2_right = atan2(sin_a2_right, cos_a2)
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
         part_of_axis_a2_right = offset_a2 - motor_a1_right*part_of_open_a2
         angle_a1_left = atan2(direction_y_a1_left, direction_x_a1_left)
-        axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
+        axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: whole turns added
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
         part_of_axis_a2_left = offset_a2 - motor_a1_left*part_of_open_a2
 
@@ -378,12 +385,14 @@ class ArrayPrograms(Programs):
                 free_a1: Real, part_of_axis_a2_left: Real, part_of_axis_a2_right: Real, ref_motor_a2: Real,
             ) -> Reals:
                 free_a2 = ref_motor_a2 + coupling_12*free_a1
-                open_a2_right = part_of_axis_a2_right + free_a2/DEGREE  # A2: where its turn is open
-                open_a2_left = part_of_axis_a2_left + free_a2/DEGREE  # A2: where its turn is open
+                # A2: without a commanded turn, the value nearest to this
+                open_a2_right = part_of_axis_a2_right + free_a2/DEGREE
+                # A2: without a commanded turn, the value nearest to this
+                open_a2_left = part_of_axis_a2_left + free_a2/DEGREE
                 return (open_a2_right, open_a2_left)
 
-            open_a2_right = mid_a2  # A2: where its turn is open
-            open_a2_left = mid_a2  # A2: where its turn is open
+            open_a2_right = mid_a2  # A2: without a commanded turn, the value nearest to this
+            open_a2_left = mid_a2  # A2: without a commanded turn, the value nearest to this
             open_a2_right, open_a2_left = elsewhere(
                 single_a2,
                 (open_a2_right, open_a2_left),
@@ -402,12 +411,14 @@ class ArrayPrograms(Programs):
             elsewhere_near_a2_right,
             (part_of_axis_a2_left, part_of_axis_a2_right, ref_a1, ref_a2, single_a2),
         )
-        axis_a2_right = nearest_period(part_of_axis_a2_right + angle_a2_right/DEGREE, near_a2_right)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_right = nearest_period(part_of_axis_a2_right + angle_a2_right/DEGREE, near_a2_right)
         angle_heading = atan2(sin_heading, cos_heading)
         motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
         part_of_axis_a3_right = -coupling_13*motor_a1_right - coupling_23*motor_a2_right
         angle_a2_left = atan2(-sin_a2_right, cos_a2)
-        axis_a2_left = nearest_period(part_of_axis_a2_left + angle_a2_left/DEGREE, near_a2_left)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_left = nearest_period(part_of_axis_a2_left + angle_a2_left/DEGREE, near_a2_left)
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
         part_of_axis_a3_left = -coupling_13*motor_a1_left - coupling_23*motor_a2_left
 
@@ -423,12 +434,14 @@ class ArrayPrograms(Programs):
             ) -> Reals:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3_right = offset_a3 + (free_a3 + part_of_axis_a3_right)/DEGREE  # A3: where its turn is open
-                open_a3_left = offset_a3 + (free_a3 + part_of_axis_a3_left)/DEGREE  # A3: where its turn is open
+                # A3: without a commanded turn, the value nearest to this
+                open_a3_right = offset_a3 + (free_a3 + part_of_axis_a3_right)/DEGREE
+                # A3: without a commanded turn, the value nearest to this
+                open_a3_left = offset_a3 + (free_a3 + part_of_axis_a3_left)/DEGREE
                 return (open_a3_right, open_a3_left)
 
-            open_a3_right = mid_a3  # A3: where its turn is open
-            open_a3_left = mid_a3  # A3: where its turn is open
+            open_a3_right = mid_a3  # A3: without a commanded turn, the value nearest to this
+            open_a3_left = mid_a3  # A3: without a commanded turn, the value nearest to this
             open_a3_right, open_a3_left = elsewhere(
                 single_a3,
                 (open_a3_right, open_a3_left),
@@ -447,12 +460,12 @@ class ArrayPrograms(Programs):
             elsewhere_near_a3_right,
             (part_of_axis_a3_left, part_of_axis_a3_right, ref_a1, ref_a2, ref_a3, single_a3),
         )
-        # a3: what the sum a123 leaves; A3: its turn
+        # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3_right = nearest_period(
             offset_a3 + (angle_heading + part_of_axis_a3_right - angle_a1_right - angle_a2_right)/DEGREE,
             near_a3_right,
         )
-        # a3: what the sum a123 leaves; A3: its turn
+        # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3_left = nearest_period(
             offset_a3 + (angle_heading + part_of_axis_a3_left - angle_a1_left - angle_a2_left)/DEGREE, near_a3_left,
         )

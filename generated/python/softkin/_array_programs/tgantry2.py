@@ -26,7 +26,7 @@ class ArrayPrograms(Programs):
         offset_a = k.offset_a
         offset_b = k.offset_b
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9), Status.BAD_INPUT)
         a = axis_a - offset_a
         b = axis_b - offset_b
@@ -44,11 +44,11 @@ class ArrayPrograms(Programs):
         offset_a = k.offset_a
         offset_b = k.offset_b
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         axis_a = a + offset_a
         b = x + y
         axis_b = b + offset_b

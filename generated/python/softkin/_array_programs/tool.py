@@ -60,7 +60,7 @@ class ArrayPrograms(OrientationPrograms):
         tool_y = k.tool_y
         tool_z = k.tool_z
         status = passed(rotation[0])
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -70,6 +70,6 @@ class ArrayPrograms(OrientationPrograms):
             ),
             Status.BAD_INPUT,
         )
-        # what the flange holds, along the axis that it turns about
+        # the flange's part along the axis about which the flange turns
         flange_along = flange_axis_x*tool_x + flange_axis_y*tool_y + flange_axis_z*tool_z
         return (base_axis_x*flange_along, base_axis_y*flange_along, base_axis_z*flange_along), status

@@ -38,17 +38,17 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        apart_2_x = k.apart_2_x
-        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
-        apart_2_y = k.apart_2_y
-        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
-        apart_3_x = k.apart_3_x
-        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
-        apart_3_y = k.apart_3_y
-        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
         arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
+        centre_1_to_2_x = k.centre_1_to_2_x
+        centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x_times_normal_z
+        centre_1_to_2_y = k.centre_1_to_2_y
+        centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y_times_normal_z
+        centre_1_to_3_x = k.centre_1_to_3_x
+        centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x_times_normal_z
+        centre_1_to_3_y = k.centre_1_to_3_y
+        centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y_times_normal_z
         normal_z = k.normal_z
         normal_z_squared = k.normal_z_squared
         offset_a1 = k.offset_a1
@@ -56,12 +56,12 @@ class ArrayPrograms(Programs):
         offset_a3 = k.offset_a3
         one_by_arm_length = k.one_by_arm_length
         part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
+        part_of_projection_2 = k.part_of_projection_2
+        part_of_projection_3 = k.part_of_projection_3
         pivot_1_x = k.pivot_1_x
         pivot_1_y = k.pivot_1_y
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
@@ -69,44 +69,52 @@ class ArrayPrograms(Programs):
         )
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        apart_2_z = a2 - a1
+        centre_1_to_2_z = a2 - a1
         a3 = axis_a3 - offset_a3
-        apart_3_z = a3 - a1
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
+        centre_1_to_3_z = a3 - a1
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
-        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
-        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
         one_by_normal_square = 1.0/normal_divisor
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
             *(
-                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
-                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+                (centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - centre_1_to_2_y_times_normal_z)*projection_3
             )
         )
         foot_y = (
             one_by_normal_square
             *(
-                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
-                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x_times_normal_z)*projection_2
+                + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
             )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
+                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         require(status, height_square >= -arm_length_squared_times_rounding, Status.IMPOSSIBLE)
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + pivot_1_y + normal_y*rise
-        z = a1 + foot_z + normal_z*rise
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        y = foot_y + pivot_1_y + height_by_normal*normal_y
+        z = a1 + foot_z + height_by_normal*normal_z
         branch_carriage_1 = (a1 - z)*one_by_arm_length
         branch_carriage_2 = (a2 - z)*one_by_arm_length
         branch_carriage_3 = (a3 - z)*one_by_arm_length
@@ -146,37 +154,34 @@ class ArrayPrograms(Programs):
         pivot_3_x = k.pivot_3_x
         pivot_3_y = k.pivot_3_y
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        span_1_x = x - part_of_span_1_x  # rod 1
-        span_1_y = y - part_of_span_1_y  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
+        span_1_x = x - part_of_span_1_x  # rod 1: known part of its vector
+        span_1_y = y - part_of_span_1_y
+        radicand_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
-        span_2_x = x - part_of_span_2_x  # rod 2
-        span_2_y = y - part_of_span_2_y  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
+        require(status, radicand_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
+        span_2_x = x - part_of_span_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_span_2_y
+        radicand_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
-        span_3_x = x - part_of_span_3_x  # rod 3
-        span_3_y = y - part_of_span_3_y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
+        require(status, radicand_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
+        span_3_x = x - part_of_span_3_x  # rod 3: known part of its vector
+        span_3_y = y - part_of_span_3_y
+        radicand_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y  # quadratic equation for a3: rod 3
         # rod 3 cannot reach
-        require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
+        require(status, radicand_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
-        a1 = z + root(root_square_a1)*sigma_carriage_1
+        a1 = z + root(radicand_a1)*sigma_carriage_1
         rod_1_z = z - a1
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        a2 = z + root(root_square_a2)*sigma_carriage_2
+        a2 = z + root(radicand_a2)*sigma_carriage_2
         rod_2_z = z - a2
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        a3 = z + root(root_square_a3)*sigma_carriage_3
+        a3 = z + root(radicand_a3)*sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
             -(
@@ -237,37 +242,34 @@ class ArrayPrograms(Programs):
         pivot_3_x = k.pivot_3_x
         pivot_3_y = k.pivot_3_y
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        span_1_x = x - part_of_span_1_x  # rod 1
-        span_1_y = y - part_of_span_1_y  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
+        span_1_x = x - part_of_span_1_x  # rod 1: known part of its vector
+        span_1_y = y - part_of_span_1_y
+        radicand_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
-        span_2_x = x - part_of_span_2_x  # rod 2
-        span_2_y = y - part_of_span_2_y  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
+        require(status, radicand_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
+        span_2_x = x - part_of_span_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_span_2_y
+        radicand_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
-        span_3_x = x - part_of_span_3_x  # rod 3
-        span_3_y = y - part_of_span_3_y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
+        require(status, radicand_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
+        span_3_x = x - part_of_span_3_x  # rod 3: known part of its vector
+        span_3_y = y - part_of_span_3_y
+        radicand_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y  # quadratic equation for a3: rod 3
         # rod 3 cannot reach
-        require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
+        require(status, radicand_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
-        a1_above = z + root(root_square_a1)
+        a1_above = z + root(radicand_a1)
         rod_1_z_above = z - a1_above
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        a2_above = z + root(root_square_a2)
+        a2_above = z + root(radicand_a2)
         rod_2_z_above = z - a2_above
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        a3_above = z + root(root_square_a3)
+        a3_above = z + root(radicand_a3)
         rod_3_z_above = z - a3_above
         type2_rods_coplanar_above_above_above = (
             -(
@@ -282,7 +284,7 @@ class ArrayPrograms(Programs):
         axis_a1_above = a1_above + offset_a1
         axis_a2_above = a2_above + offset_a2
         axis_a3_above = a3_above + offset_a3
-        a3_below = z - root(root_square_a3)
+        a3_below = z - root(radicand_a3)
         rod_3_z_below = z - a3_below
         type2_rods_coplanar_above_above_below = (
             -(
@@ -295,7 +297,7 @@ class ArrayPrograms(Programs):
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0, 3)
         axis_a3_below = a3_below + offset_a3
-        a2_below = z - root(root_square_a2)
+        a2_below = z - root(radicand_a2)
         rod_2_z_below = z - a2_below
         type2_rods_coplanar_above_below_above = (
             -(
@@ -318,7 +320,7 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0, 3)
-        a1_below = z - root(root_square_a1)
+        a1_below = z - root(radicand_a1)
         rod_1_z_below = z - a1_below
         type2_rods_coplanar_below_above_above = (
             -(

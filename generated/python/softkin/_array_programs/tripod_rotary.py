@@ -61,7 +61,7 @@ class ArrayPrograms(Programs):
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
@@ -69,65 +69,76 @@ class ArrayPrograms(Programs):
         )
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
         one_by_normal_square = 1.0/normal_divisor
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         require(status, height_square >= -arm_length_2_squared_times_rounding, Status.IMPOSSIBLE)
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + normal_y*rise
-        z = foot_z + pivot_1_z + normal_z*rise
-        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
-        span_1_z = z - fixed_length_2  # rod 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        y = foot_y + height_by_normal*normal_y
+        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_z = z - fixed_length_2
         branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
-        span_2_x = x - part_of_pivot_2_x  # rod 2
-        span_2_y = y - part_of_pivot_2_y  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
         branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
-        span_3_y = part_of_pivot_2_y + y  # rod 3
+        span_3_y = part_of_pivot_2_y + y
         branch_knee_3 = ((-span_2_x - root_of_3_2*span_3_y)*sin_a3 - 2.0*span_1_z*cos_a3)*half_by_arm_length_2
         return (
             (
@@ -174,7 +185,7 @@ class ArrayPrograms(Programs):
         single_a3 = k.single_a3
         twice_arm_length_1 = k.twice_arm_length_1
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -183,87 +194,93 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
-        span_1_z = z - fixed_length_2  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_z = z - fixed_length_2
+        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         require(status, effective_a1 > arm_length_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > arm_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1*twice_arm_length_1  # law of cosines for a1: rod 1
         part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z)*z - part_of_scaled_cosine_a1
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
         one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
         one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        span_2_x = x - part_of_pivot_2_x  # rod 2
-        span_2_y = y - part_of_pivot_2_y  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
         along_a2 = span_2_x - root_of_3_2*span_2_y
         across_a2 = 2.0*span_1_z
         across_a2_squared = across_a2*across_a2
-        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         require(status, effective_a2 > part_of_divisor_a2, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > part_of_divisor_a2, effective_a2, 1.0)
-        swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = arm_length_1*divisor_a2  # law of cosines for a2: rod 2
         part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
         one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
         one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        span_3_y = part_of_pivot_2_y + y  # rod 3
+        span_3_y = part_of_pivot_2_y + y
         along_a3 = span_2_x + root_of_3_2*span_3_y
-        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         require(status, effective_a3 > part_of_divisor_a2, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > part_of_divisor_a2, effective_a3, 1.0)
-        swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # cosine times the scale, seen from the origin
+        swing_scale_a3 = arm_length_1*divisor_a3  # law of cosines for a3: rod 3
+        # cosine, times the scale, without cancellation
         scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
         one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
         one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/divisor_a1
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
         sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
         rod_1_z = z - pivot_1_z
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/divisor_a2
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
         rod_2_x = x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
         rod_2_y = y - pivot_2_y
         sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/divisor_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
         rod_2_z = z - pivot_2_z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/divisor_of_cos_a3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/divisor_a3
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
         rod_3_x = x - pivot_3_x
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
         rod_3_y = y - pivot_3_y
         sin_a3 = (along_a3*sin_swing_a3 - across_a2*cos_swing_a3)/divisor_a3
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
             -part_of_type2_rods_coplanar
@@ -282,15 +299,15 @@ class ArrayPrograms(Programs):
         require(status, absolute(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 3
         require(status, absolute(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: whole turns added
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
-        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: whole turns added
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: whole turns added
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -347,7 +364,7 @@ class ArrayPrograms(Programs):
         single_a3 = k.single_a3
         twice_arm_length_1 = k.twice_arm_length_1
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -356,52 +373,52 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
-        span_1_z = z - fixed_length_2  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_z = z - fixed_length_2
+        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         require(status, effective_a1 > arm_length_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > arm_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1*twice_arm_length_1  # law of cosines for a1: rod 1
         part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z)*z - part_of_scaled_cosine_a1
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
         one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
         one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        span_2_x = x - part_of_pivot_2_x  # rod 2
-        span_2_y = y - part_of_pivot_2_y  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
         along_a2 = span_2_x - root_of_3_2*span_2_y
         across_a2 = 2.0*span_1_z
         across_a2_squared = across_a2*across_a2
-        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         require(status, effective_a2 > part_of_divisor_a2, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > part_of_divisor_a2, effective_a2, 1.0)
-        swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = arm_length_1*divisor_a2  # law of cosines for a2: rod 2
         part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
         one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
         one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
         # a2: out of reach
         require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        span_3_y = part_of_pivot_2_y + y  # rod 3
+        span_3_y = part_of_pivot_2_y + y
         along_a3 = span_2_x + root_of_3_2*span_3_y
-        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         require(status, effective_a3 > part_of_divisor_a2, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > part_of_divisor_a2, effective_a3, 1.0)
-        swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # cosine times the scale, seen from the origin
+        swing_scale_a3 = arm_length_1*divisor_a3  # law of cosines for a3: rod 3
+        # cosine, times the scale, without cancellation
         scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
         one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
         one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
         # ball joint of rod 1
@@ -412,39 +429,48 @@ class ArrayPrograms(Programs):
         require(status, absolute(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 3
         require(status, absolute(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1_outward = 2.0*root(sine_square_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1_outward = 2.0*root(sine_square_a1)/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1_outward = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_outward = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1_outward  # rod 1
+        # rod 1: centre about which it swings
+        pivot_1_x_outward = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1_outward
         rod_1_x_outward = x - pivot_1_x_outward
         sin_a1_outward = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1_outward)/divisor_a1
-        pivot_1_z_outward = fixed_length_2 - arm_length_1*sin_a1_outward  # rod 1
+        pivot_1_z_outward = fixed_length_2 - arm_length_1*sin_a1_outward
         rod_1_z_outward = z - pivot_1_z_outward
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2_inward = 2.0*root(sine_square_a2)/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_outward = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_outward = part_of_pivot_2_x + half_arm_length_1*cos_a2_outward  # rod 2
+        # rod 2: centre about which it swings
+        pivot_2_x_outward = part_of_pivot_2_x + half_arm_length_1*cos_a2_outward
         rod_2_x_outward = x - pivot_2_x_outward
-        pivot_2_y_outward = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2_outward  # rod 2
+        pivot_2_y_outward = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2_outward
         rod_2_y_outward = y - pivot_2_y_outward
         sin_a2_outward = (-across_a2*cos_swing_a2 - along_a2*sin_swing_a2_inward)/divisor_a2
-        pivot_2_z_outward = fixed_length_2 - arm_length_1*sin_a2_outward  # rod 2
+        pivot_2_z_outward = fixed_length_2 - arm_length_1*sin_a2_outward
         rod_2_z_outward = z - pivot_2_z_outward
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        sin_swing_a3_inward = 2.0*root(sine_square_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_swing_a3_inward = 2.0*root(sine_square_a3)/divisor_of_cos_a3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3_outward = (along_a3*cos_swing_a3 - across_a2*sin_swing_a3_inward)/divisor_a3
-        pivot_3_x_outward = part_of_pivot_2_x + half_arm_length_1*cos_a3_outward  # rod 3
+        # rod 3: centre about which it swings
+        pivot_3_x_outward = part_of_pivot_2_x + half_arm_length_1*cos_a3_outward
         rod_3_x_outward = x - pivot_3_x_outward
-        pivot_3_y_outward = arm_length_1_times_root_of_3_times_half*cos_a3_outward - part_of_pivot_2_y  # rod 3
+        pivot_3_y_outward = arm_length_1_times_root_of_3_times_half*cos_a3_outward - part_of_pivot_2_y
         rod_3_y_outward = y - pivot_3_y_outward
         sin_a3_outward = (-across_a2*cos_swing_a3 - along_a3*sin_swing_a3_inward)/divisor_a3
-        pivot_3_z_outward = fixed_length_2 - arm_length_1*sin_a3_outward  # rod 3
+        pivot_3_z_outward = fixed_length_2 - arm_length_1*sin_a3_outward
         rod_3_z_outward = z - pivot_3_z_outward
         type2_rods_coplanar_outward_outward_outward = (
             -part_of_type2_rods_coplanar
@@ -458,22 +484,26 @@ class ArrayPrograms(Programs):
         refusal_outward_outward_outward = select(
             type2_rods_coplanar_outward_outward_outward >= min_type2_margin, 0, 3,
         )
-        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)  # A1: its turn
-        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
+        # A1: whole turns added
+        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)
+        open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)  # A2: its turn
-        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
+        # A2: whole turns added
+        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)
+        open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)  # A3: its turn
+        # A3: whole turns added
+        axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3_inward = (across_a2*sin_swing_a3_inward + along_a3*cos_swing_a3)/divisor_a3
-        pivot_3_x_inward = part_of_pivot_2_x + half_arm_length_1*cos_a3_inward  # rod 3
+        pivot_3_x_inward = part_of_pivot_2_x + half_arm_length_1*cos_a3_inward  # rod 3: centre about which it swings
         rod_3_x_inward = x - pivot_3_x_inward
-        pivot_3_y_inward = arm_length_1_times_root_of_3_times_half*cos_a3_inward - part_of_pivot_2_y  # rod 3
+        pivot_3_y_inward = arm_length_1_times_root_of_3_times_half*cos_a3_inward - part_of_pivot_2_y
         rod_3_y_inward = y - pivot_3_y_inward
         sin_a3_inward = (along_a3*sin_swing_a3_inward - across_a2*cos_swing_a3)/divisor_a3
-        pivot_3_z_inward = fixed_length_2 - arm_length_1*sin_a3_inward  # rod 3
+        pivot_3_z_inward = fixed_length_2 - arm_length_1*sin_a3_inward
         rod_3_z_inward = z - pivot_3_z_inward
         type2_rods_coplanar_outward_outward_inward = (
             -part_of_type2_rods_coplanar
@@ -485,14 +515,16 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = select(type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0, 3)
-        axis_a3_inward = nearest_period(offset_a3 + degrees(sin_a3_inward, cos_a3_inward), near_a3)  # A3: its turn
+        # A3: whole turns added
+        axis_a3_inward = nearest_period(offset_a3 + degrees(sin_a3_inward, cos_a3_inward), near_a3)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_inward = (across_a2*sin_swing_a2_inward + along_a2*cos_swing_a2)/divisor_a2
-        pivot_2_x_inward = part_of_pivot_2_x + half_arm_length_1*cos_a2_inward  # rod 2
+        pivot_2_x_inward = part_of_pivot_2_x + half_arm_length_1*cos_a2_inward  # rod 2: centre about which it swings
         rod_2_x_inward = x - pivot_2_x_inward
-        pivot_2_y_inward = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2_inward  # rod 2
+        pivot_2_y_inward = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2_inward
         rod_2_y_inward = y - pivot_2_y_inward
         sin_a2_inward = (along_a2*sin_swing_a2_inward - across_a2*cos_swing_a2)/divisor_a2
-        pivot_2_z_inward = fixed_length_2 - arm_length_1*sin_a2_inward  # rod 2
+        pivot_2_z_inward = fixed_length_2 - arm_length_1*sin_a2_inward
         rod_2_z_inward = z - pivot_2_z_inward
         type2_rods_coplanar_outward_inward_outward = (
             -part_of_type2_rods_coplanar
@@ -504,7 +536,8 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = select(type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0, 3)
-        axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)  # A2: its turn
+        # A2: whole turns added
+        axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)
         type2_rods_coplanar_outward_inward_inward = (
             -part_of_type2_rods_coplanar
             *(
@@ -515,11 +548,13 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = select(type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0, 3)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1_inward = (span_1_x*cos_swing_a1 + span_1_z*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_inward = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1_inward  # rod 1
+        # rod 1: centre about which it swings
+        pivot_1_x_inward = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1_inward
         rod_1_x_inward = x - pivot_1_x_inward
         sin_a1_inward = (span_1_z*cos_swing_a1 - span_1_x*sin_swing_a1_outward)/divisor_a1
-        pivot_1_z_inward = fixed_length_2 - arm_length_1*sin_a1_inward  # rod 1
+        pivot_1_z_inward = fixed_length_2 - arm_length_1*sin_a1_inward
         rod_1_z_inward = z - pivot_1_z_inward
         type2_rods_coplanar_inward_outward_outward = (
             -part_of_type2_rods_coplanar
@@ -531,7 +566,8 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = select(type2_rods_coplanar_inward_outward_outward >= min_type2_margin, 0, 3)
-        axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)  # A1: its turn
+        # A1: whole turns added
+        axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)
         type2_rods_coplanar_inward_outward_inward = (
             -part_of_type2_rods_coplanar
             *(

@@ -52,7 +52,7 @@ class ArrayPrograms(OrientationPrograms):
         tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9), Status.BAD_INPUT)
         a = DEGREE*(axis_a - offset_a)
         sin_a = sin(a)
@@ -96,19 +96,20 @@ class ArrayPrograms(OrientationPrograms):
         single_b = k.single_b
         tool_side = k.tool_side
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
 
         def elsewhere_direction_x_a(ref_a: Real) -> Reals:
             free_a = (ref_a - offset_a)*DEGREE
-            direction_x_a = cos(free_a)  # a: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
+            direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
             return (direction_x_a, direction_y_a)
 
-        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_a = sigma_roll*r13_of_a
         direction_y_a = sigma_roll*r23_of_a
         direction_x_a, direction_y_a = elsewhere(
@@ -117,13 +118,13 @@ class ArrayPrograms(OrientationPrograms):
             elsewhere_direction_x_a,
             (ref_a,),
         )
-        open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
+        open_a = select(single_a, mid_a, ref_a)  # A: without a commanded turn, the value nearest to this
         near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
-        axis_a = nearest_period(offset_a + degrees(direction_y_a, direction_x_a), near_a)  # A: its turn
+        axis_a = nearest_period(offset_a + degrees(direction_y_a, direction_x_a), near_a)  # A: whole turns added
         a_radius_of_b = sigma_roll*radius_a
-        open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
+        open_b = select(single_b, mid_b, ref_b)  # B: without a commanded turn, the value nearest to this
         near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
-        axis_b = nearest_period(offset_b + degrees(a_radius_of_b, r33), near_b)  # B: its turn
+        axis_b = nearest_period(offset_b + degrees(a_radius_of_b, r33), near_b)  # B: whole turns added
         return (axis_a, axis_b), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -150,7 +151,7 @@ class ArrayPrograms(OrientationPrograms):
         roll_axis_offset_z = k.roll_axis_offset_z
         tool_length_times_tool_side = k.tool_length_times_tool_side
         status = passed(rotation[0])
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -160,7 +161,8 @@ class ArrayPrograms(OrientationPrograms):
             ),
             Status.BAD_INPUT,
         )
-        flange_along = flange_axis_z*roll_axis_offset_z  # what the flange holds, along the axis that it turns about
+        # the flange's part along the axis about which the flange turns
+        flange_along = flange_axis_z*roll_axis_offset_z
         return (
             (
                 base_axis_x*flange_along + r13*tool_length_times_tool_side,
@@ -186,26 +188,26 @@ class ArrayPrograms(OrientationPrograms):
         single_b = k.single_b
         tool_side = k.tool_side
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
 
         def elsewhere_direction_x_a_positive(ref_a: Real) -> Reals:
             free_a = (ref_a - offset_a)*DEGREE
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_a_positive = cos(free_a)
             direction_y_a_positive = sin(free_a)
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
             return (direction_x_a_positive, direction_y_a_positive, direction_x_a_negative, direction_y_a_negative)
 
-        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_a_positive = r13_of_a
         direction_y_a_positive = r23_of_a
-        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_a_negative = -r13_of_a
         direction_y_a_negative = -r23_of_a
         direction_x_a_positive, direction_y_a_positive, direction_x_a_negative, direction_y_a_negative = elsewhere(
@@ -214,16 +216,16 @@ class ArrayPrograms(OrientationPrograms):
             elsewhere_direction_x_a_positive,
             (ref_a,),
         )
-        open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
+        open_a = select(single_a, mid_a, ref_a)  # A: without a commanded turn, the value nearest to this
         near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
-        # A: its turn
+        # A: whole turns added
         axis_a_positive = nearest_period(offset_a + degrees(direction_y_a_positive, direction_x_a_positive), near_a)
-        open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
+        open_b = select(single_b, mid_b, ref_b)  # B: without a commanded turn, the value nearest to this
         near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
-        axis_b_positive = nearest_period(offset_b + degrees(radius_a, r33), near_b)  # B: its turn
-        # A: its turn
+        axis_b_positive = nearest_period(offset_b + degrees(radius_a, r33), near_b)  # B: whole turns added
+        # A: whole turns added
         axis_a_negative = nearest_period(offset_a + degrees(direction_y_a_negative, direction_x_a_negative), near_a)
-        axis_b_negative = nearest_period(offset_b + degrees(-radius_a, r33), near_b)  # B: its turn
+        axis_b_negative = nearest_period(offset_b + degrees(-radius_a, r33), near_b)  # B: whole turns added
         return (
             ((axis_a_positive, axis_b_positive), status),
             ((axis_a_negative, axis_b_negative), status),

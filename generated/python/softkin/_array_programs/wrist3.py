@@ -51,7 +51,7 @@ class ArrayPrograms(OrientationPrograms):
         tool_offset_y = k.tool_offset_y
         tool_offset_z = k.tool_offset_z
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_c) <= 1e9),
@@ -107,21 +107,23 @@ class ArrayPrograms(OrientationPrograms):
         single_b = k.single_b
         single_c = k.single_c
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9),
             Status.BAD_INPUT,
         )
-        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
+        radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+            direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
             return (direction_x_c, direction_y_c)
 
-        direction_x_c = sigma_hand*r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
+        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+        direction_x_c = sigma_hand*r31
         direction_y_c = -sigma_hand*r32
         direction_x_c, direction_y_c = elsewhere(
             radius_c > 1e-11,
@@ -131,16 +133,17 @@ class ArrayPrograms(OrientationPrograms):
         )
         scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
         direction_y_a = -direction_x_c*r12 - direction_y_c*r11
-        open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
+        open_a = select(single_a, mid_a, ref_a)  # A: without a commanded turn, the value nearest to this
         near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
-        axis_a = nearest_period(offset_a + degrees(direction_y_a, scaled_r22_before_c), near_a)  # A: its turn
+        # A: whole turns added
+        axis_a = nearest_period(offset_a + degrees(direction_y_a, scaled_r22_before_c), near_a)
         c_radius_of_b = sigma_hand*radius_c
-        open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
+        open_b = select(single_b, mid_b, ref_b)  # B: without a commanded turn, the value nearest to this
         near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
-        axis_b = nearest_period(offset_b + degrees(c_radius_of_b, r33), near_b)  # B: its turn
-        open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
+        axis_b = nearest_period(offset_b + degrees(c_radius_of_b, r33), near_b)  # B: whole turns added
+        open_c = select(single_c, mid_c, ref_c)  # C: without a commanded turn, the value nearest to this
         near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
-        axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
+        axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: whole turns added
         return (axis_a, axis_b, axis_c), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -197,27 +200,29 @@ class ArrayPrograms(OrientationPrograms):
         single_b = k.single_b
         single_c = k.single_c
         status = passed(position)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9),
             Status.BAD_INPUT,
         )
-        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
+        radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
 
         def elsewhere_direction_x_c_down(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
-            # c: polar angle in the r31 and r32 equations; its reference where it is free
+            # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
             direction_x_c_down = cos(free_c)
             direction_y_c_down = sin(free_c)
-            # c: polar angle in the r31 and r32 equations; its reference where it is free
+            # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
             direction_x_c_up = direction_x_c_down
             direction_y_c_up = direction_y_c_down
             return (direction_x_c_down, direction_y_c_down, direction_x_c_up, direction_y_c_up)
 
-        direction_x_c_down = r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
+        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+        direction_x_c_down = r31
         direction_y_c_down = -r32
-        direction_x_c_up = -r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
+        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
+        direction_x_c_up = -r31
         direction_y_c_up = -direction_y_c_down
         direction_x_c_down, direction_y_c_down, direction_x_c_up, direction_y_c_up = elsewhere(
             radius_c > 1e-11,
@@ -227,23 +232,24 @@ class ArrayPrograms(OrientationPrograms):
         )
         scaled_r22_before_c_down = direction_x_c_down*r22 + direction_y_c_down*r21
         direction_y_a_down = -direction_x_c_down*r12 - direction_y_c_down*r11
-        open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
+        open_a = select(single_a, mid_a, ref_a)  # A: without a commanded turn, the value nearest to this
         near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
-        # A: its turn
+        # A: whole turns added
         axis_a_down = nearest_period(offset_a + degrees(direction_y_a_down, scaled_r22_before_c_down), near_a)
-        open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
+        open_b = select(single_b, mid_b, ref_b)  # B: without a commanded turn, the value nearest to this
         near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
-        axis_b_down = nearest_period(offset_b + degrees(radius_c, r33), near_b)  # B: its turn
-        open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
+        axis_b_down = nearest_period(offset_b + degrees(radius_c, r33), near_b)  # B: whole turns added
+        open_c = select(single_c, mid_c, ref_c)  # C: without a commanded turn, the value nearest to this
         near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
-        # C: its turn
+        # C: whole turns added
         axis_c_down = nearest_period(offset_c + degrees(direction_y_c_down, direction_x_c_down), near_c)
         scaled_r22_before_c_up = direction_x_c_up*r22 + direction_y_c_up*r21
         direction_y_a_up = -direction_x_c_up*r12 - direction_y_c_up*r11
-        # A: its turn
+        # A: whole turns added
         axis_a_up = nearest_period(offset_a + degrees(direction_y_a_up, scaled_r22_before_c_up), near_a)
-        axis_b_up = nearest_period(offset_b + degrees(-radius_c, r33), near_b)  # B: its turn
-        axis_c_up = nearest_period(offset_c + degrees(direction_y_c_up, direction_x_c_up), near_c)  # C: its turn
+        axis_b_up = nearest_period(offset_b + degrees(-radius_c, r33), near_b)  # B: whole turns added
+        # C: whole turns added
+        axis_c_up = nearest_period(offset_c + degrees(direction_y_c_up, direction_x_c_up), near_c)
         return (
             ((axis_a_down, axis_b_down, axis_c_down), status),
             ((axis_a_up, axis_b_up, axis_c_up), status),
