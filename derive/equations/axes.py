@@ -1,4 +1,4 @@
-"""The edges of a program: axis values to joint values and back, periods, and the checks of what comes in."""
+"""Axes: axis values to joint values and back, the choice of a period, and the checks of inputs."""
 
 from __future__ import annotations
 
@@ -32,13 +32,14 @@ from derive.ir.symbols import (
 )
 
 _REASONABLE = "numbers of reasonable size"
+_CHECK = "inputs must be numbers, and of reasonable size"
 
 
 def finite(symbols: Sequence[sp.Symbol]) -> tuple[Require, ...]:
-    """Every input that is read must be a number of reasonable size."""
+    """The condition that every input that is read is a number of reasonable size."""
     conditions = [sp.Le(sp.Abs(s), LARGEST) for s in symbols]
     reason = about_input(Why.NOT_GIVEN, _REASONABLE)
-    return (Require(sp.And(*conditions), Status.BAD_INPUT, _REASONABLE, reason),) if conditions else ()
+    return (Require(sp.And(*conditions), Status.BAD_INPUT, _CHECK, reason),) if conditions else ()
 
 
 def joint_lets(mechanism: Mechanism) -> tuple[Let, ...]:
@@ -57,7 +58,7 @@ def _motor_and_joint(value: sp.Expr, motor: sp.Symbol, joint: sp.Symbol, couplin
 
 
 def reference_lets(mechanism: Mechanism) -> tuple[Let, ...]:
-    """Joint values at the reference: `free_a1`, used where nothing else determines the joint."""
+    """Joint values at the reference: `free_a1`, taken where nothing else determines the joint."""
     table = {j.motor: _reference_motor(j) for j in mechanism.joints}
     lets: list[Let] = []
     for joint in mechanism.joints:
@@ -76,7 +77,7 @@ def free(joint: Joint) -> sp.Symbol:
 
 
 def axis_lets(joint: Joint) -> tuple[Let, ...]:
-    """The axis value of a solved joint: period chosen, offset added, coupling taken back."""
+    """The axis value of a solved joint: its period chosen, its offset added, its gear coupling subtracted."""
     shift = joint.offset - joint.coupling / joint.unit
     motor = Let(joint.motor, (joint.axis - joint.offset) * joint.unit)
     if not joint.is_angle:
@@ -93,25 +94,27 @@ def axis_lets(joint: Joint) -> tuple[Let, ...]:
 
 
 def _near(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
-    """The axis value that the period is chosen nearest to: commanded turn, middle of a range with one value inside, or reference.
+    """The axis value to which the nearest period is chosen: of the commanded turn, the middle of the limits, or the reference.
 
-    Limits never choose again: in a wider range the other value inside may be a step away. The reference is compared joint
-    by joint: with gear coupling an axis moves with its neighbours.
+    The middle is taken where one value at most lies inside the limits. In wider limits another value inside may be a whole turn
+    away, so limits never choose there: they only refuse. The reference is compared joint by joint, because with gear coupling
+    an axis moves with its neighbours.
     """
     shift = -joint.coupling / joint.unit
     reference = joint.reference if joint.coupling == 0 else free(joint) / joint.unit + joint.offset + shift
+    note = f"{joint.name}: without a commanded turn, the value nearest to this"
     open_value, is_single = real(f"open_{joint.key}"), flag(f"single_{joint.key}")
     commanded = Select(sp.Gt(joint.turn, 0), joint.turn - 1, joint.turn)
     return (
-        Let(open_value, Select(is_single, real(f"mid_{joint.key}"), reference), f"{joint.name}: where its turn is open"),
+        Let(open_value, Select(is_single, real(f"mid_{joint.key}"), reference), note),
         Let(near, Select(sp.Ne(joint.turn, 0), 360 * ToReal(commanded), open_value)),
     )
 
 
 def plain_angle(joint: Joint) -> Let:
-    """The joint value with its turns, for equations in which turns count."""
+    """The joint value with its whole turns, for equations in which the angle stands outside sines and cosines."""
     shift = joint.offset - joint.coupling / joint.unit
-    return Let(joint.symbol, (joint.axis - shift) * joint.unit, f"{joint.name}: turns count from here on")
+    return Let(joint.symbol, (joint.axis - shift) * joint.unit, f"{joint.name}: joint value with its whole turns")
 
 
 def frozen_lets(joint: Joint) -> tuple[Statement, ...]:
@@ -119,7 +122,7 @@ def frozen_lets(joint: Joint) -> tuple[Statement, ...]:
     shift = joint.offset - joint.coupling / joint.unit
     axis = joint.reference if joint.coupling == 0 else free(joint) / joint.unit + shift
     lets: list[Statement] = [
-        Let(joint.symbol, free(joint), f"{joint.name}: frozen at the reference"),
+        Let(joint.symbol, free(joint), f"{joint.name}: held at the reference"),
         Let(joint.axis, axis),
         Let(joint.motor, (joint.axis - joint.offset) * joint.unit),
     ]

@@ -1,8 +1,9 @@
-"""Both-sided splits of a chain: T = L M S, so that L^-1 T S^-1 = M holds for every part M of the chain.
+"""Chain splits (Paul, Pieper): T = L M S, so that L^-1 T S^-1 = M holds for every middle part M of the chain.
 
-Positions are split once, before anything is known: behind the flange part S that no joint moves the origin of (the
-wrist centre is what position and rotation say together), and in front of the part L up to the first joint. An arm whose
-first joints meet in a point is the same seen from its flange: T^-1 = S^-1 M^-1 L^-1. For rotations see `rotations`.
+Positions are split once, before any joint is known. S is the part of the chain at the flange whose joints do not move its
+first point: this is the wrist centre, which the commanded position and rotation determine together (Pieper). L is the part up
+to the first joint. An arm whose first joints intersect in a point is treated the same way seen from its flange:
+T^-1 = S^-1 M^-1 L^-1. For rotations see `rotations`.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ def is_spatial(chain: Chain) -> bool:
 
 @dataclass(frozen=True)
 class Target:
-    """A commanded point: its coordinates, and the names of what they are made of."""
+    """A commanded point: its coordinates, and the statements that bind the names in them."""
 
     point: tuple[sp.Expr, ...]
     lets: tuple[Let, ...] = ()
@@ -49,7 +50,7 @@ class Commanded:
 
 @dataclass(frozen=True)
 class Unknowns:
-    """What the equations of a chain are to be solved for, and what their normal form needs."""
+    """The unknowns of the equations of a chain, and the symbols that their normal form needs."""
 
     angles: tuple[sp.Symbol, ...]
     lengths: tuple[sp.Symbol, ...]
@@ -68,9 +69,9 @@ class Unknowns:
 
 
 def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> tuple[Equation, ...]:
-    """The position equations of a chain, at the split that leaves some unknown alone, else those of the whole chain.
+    """The position equations of a chain, at the split that isolates an unknown, else those of the whole chain.
 
-    Where none does, the chain is looked at from its flange: then those of the point that the first joints turn about.
+    Where no split does, the chain is also taken from its flange, to the point in which its first joints intersect.
     """
     point = [real(c) for c in COORDINATE_NAMES]
     factors, target = chain.factors, Target(tuple(point))
@@ -84,28 +85,28 @@ def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> t
 
 
 def _split(factors: Sequence[Factor], target: Target, unknowns: Unknowns) -> tuple[Equation, ...]:
-    """The equations of a point behind the first joint, if more of them leave some unknown alone than of the whole chain."""
+    """The equations seen from behind the first joint, if more of them have one unknown than those seen from the base."""
     first = next(i for i, f in enumerate(factors) if f.amount.free_symbols & {*unknowns.angles, *unknowns.lengths})
     whole, behind = _equations(factors, -1, target, unknowns), _equations(factors, first, target, unknowns)
     return behind if _alone(behind, unknowns) > _alone(whole, unknowns) else whole
 
 
 def _alone(equations: Sequence[Equation], unknowns: Unknowns) -> int:
-    """How many equations leave some unknown alone."""
+    """The number of equations with exactly one unknown."""
     return sum(len(unknowns.of(e.expression)) == 1 for e in equations)
 
 
 def _behind_the_wrist(
     chain: Chain, point: sp.Matrix, commanded: Commanded, unknowns: Unknowns
 ) -> tuple[tuple[Factor, ...], Target]:
-    """The part of the chain to the point that the commanded pose fixes and the fewest joints move."""
+    """The chain up to the wrist centre: the point that the commanded pose determines and the fewest joints move."""
     best, target = chain.factors, Target(tuple(point))
     fewest = len(_movers(chain, unknowns))
     for cut in reversed([i for i, f in enumerate(chain.factors) if f.motion is Motion.TURN]):
         rest = pose_of(Chain(chain.factors[cut:]))
         seen = [unknowns.form(v) for v in -(rest.rotation.T * rest.position)]
         if any(unknowns.of(v) for v in seen) or any(v != 0 for i, v in enumerate(seen) if i not in commanded.columns):
-            break  # its place in what is commanded of the flange is no longer fixed
+            break  # the commanded columns of the flange no longer determine the point
         front = Chain(chain.factors[:cut])
         if len(_movers(front, unknowns)) < fewest:
             best, target, fewest = front.factors, _wrist(point, commanded.rotation, seen), len(_movers(front, unknowns))
@@ -115,7 +116,7 @@ def _behind_the_wrist(
 def _before_the_shoulder(
     chain: Chain, point: sp.Matrix, commanded: Commanded, unknowns: Unknowns
 ) -> tuple[tuple[Factor, ...], Target]:
-    """The chain from its flange to the point of the base that the most first joints do not move, seen from the flange."""
+    """The chain from its flange back to the shoulder: the last point of the base that its first joints do not move."""
     end = 0
     for cut in range(1, len(chain.factors)):
         moved = pose_of(Chain(chain.factors[:cut])).position
@@ -138,7 +139,7 @@ def _wrist(point: sp.Matrix, rotation: sp.Matrix, seen: Sequence[sp.Expr]) -> Ta
     moved = point + rotation * sp.Matrix(seen)
     lets = []
     for c, value in zip(COORDINATE_NAMES, moved, strict=True):
-        note = "the point that the last joints turn about" if c == "x" else ""
+        note = "wrist centre: the point in which the last axes intersect" if c == "x" else ""
         lets.append(Let(real(f"wrist_{c}"), value, note))
     if not any(is_compound(let.value) for let in lets):
         return Target(tuple(moved))
@@ -146,7 +147,7 @@ def _wrist(point: sp.Matrix, rotation: sp.Matrix, seen: Sequence[sp.Expr]) -> Ta
 
 
 def _equations(factors: Sequence[Factor], first: int, target: Target, unknowns: Unknowns) -> tuple[Equation, ...]:
-    """The equations of the point seen from behind the joint at `first` and what is fixed to it; -1: from the base."""
+    """The equations of the point in the frame behind the joint at `first` and the links fixed to it; -1: in that of the base."""
     moving = {*unknowns.angles, *unknowns.lengths}
     end = first + 1
     while first >= 0 and end < len(factors) and not factors[end].amount.free_symbols & moving:

@@ -1,4 +1,4 @@
-"""Flags and signs of a machine in its programs: equations calculate with 0 and 1 and with -1 and 1, programs choose and convert.
+"""Flags and signs of a machine: equations calculate with 0 and 1, and with -1 and 1; programs choose, and convert to numbers.
 
     x (1 - swap) + y swap     →  select(swap, y, x)
     z + h (1 - 2 down)        →  z + h select(down, -1, 1)
@@ -25,12 +25,12 @@ _NAMED = {Role.FLAG: flag, Role.SIGN: count}
 
 
 def input_of(parameter: Parameter) -> sp.Symbol:
-    """The name of a parameter as the setup reads it: a flag is true or false, a sign a whole number."""
+    """The name of a parameter as the setup reads it: of a flag a Boolean, of a sign an integer."""
     return _NAMED.get(parameter.role, real)(parameter.name)
 
 
 def with_choices(program: Program, parameters: Sequence[Parameter]) -> Program:
-    """The program with a choice wherever it calculates with a flag of the machine."""
+    """The program with a choice in place of every calculation with a flag of the machine."""
     for name in (p.name for p in parameters if p.role is Role.FLAG):
         if real(name) in program.inputs:
             body = tuple(rewritten(s, partial(_chosen, name=name)) for s in program.body)
@@ -52,7 +52,7 @@ def _with_signs(value: sp.Basic, signs: Mapping[sp.Symbol, sp.Expr], parameters:
 
 
 def _chosen(value: sp.Basic, name: str) -> sp.Basic:
-    """The value with a choice where it calculates with a flag: of the terms, or of the factor, that have it."""
+    """The value with a choice in place of the terms, or of the factor, that calculate with a flag."""
     number = real(name)
     if number not in value.free_symbols:
         return value
@@ -69,7 +69,7 @@ def _chosen(value: sp.Basic, name: str) -> sp.Basic:
 
 
 def _asked(value: Relational, name: str) -> sp.Basic:
-    """A comparison: the flag itself, where nothing else decides it."""
+    """A comparison: the flag itself, or its negative, where the flag alone decides it."""
     holds, fails = (value.xreplace({real(name): sp.Integer(number)}) for number in (1, 0))
     if holds == fails or {holds, fails} == {sp.true, sp.false}:
         return holds if holds == fails else flag(name) if holds == sp.true else sp.Not(flag(name))
@@ -77,7 +77,7 @@ def _asked(value: Relational, name: str) -> sp.Basic:
 
 
 def _choice(value: sp.Expr, name: str) -> sp.Expr:
-    """The value where the flag is set, and where it is not; factors that both have stand before the choice."""
+    """A choice between the value with the flag set and without; common factors stand before the choice."""
     holds, fails = (value.xreplace({real(name): sp.Integer(number)}) for number in (1, 0))
     if holds == 0 or fails == 0:
         return Select(flag(name), holds, fails)

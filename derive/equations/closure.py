@@ -1,7 +1,7 @@
 """The closure equations of a mechanism, in the coordinates of its task.
 
-A chain gives f(q) - x = 0; a mechanism that states equations gives these. The commanded turn enters as a
-known angle `heading`, through its sine and cosine.
+A chain gives f(q) - x = 0; a mechanism that states equations gives these. A commanded rotation about z enters as the
+known angle `heading`, by its sine and cosine.
 """
 
 from __future__ import annotations
@@ -39,21 +39,21 @@ from derive.ir.symbols import (
 )
 
 FLANGE = tuple(real(f"flange_{c}") for c in COORDINATE_NAMES)
-"""The flange behind such a point, where it keeps its orientation."""
+"""The position of the flange for a commanded point off it, where the flange keeps its orientation."""
 
 
 @dataclass(frozen=True)
 class Closure:
-    """Equations, what they name, and what of the position is met and not solved for."""
+    """Equations, the statements that bind their names, and the coordinate of the position that is given."""
 
     equations: tuple[Equation, ...]
     arguments: tuple[sp.Expr, ...]
     """Arguments of sines and cosines, where sums of parallel angles can be read."""
     lets: tuple[Let, ...] = ()
     plane: sp.Expr | None = None
-    """The z that a planar machine has."""
+    """The constant z of a planar machine."""
     turns: tuple[Factor, ...] = ()
-    """The turns whose product is the commanded rotation, where more of it is followed than a turn about z."""
+    """The rotations whose product is the commanded one, where the task is more than a rotation about z."""
     columns: tuple[int, ...] = (0, 1, 2)
     """The columns of the commanded rotation that are followed."""
 
@@ -69,7 +69,7 @@ def fixed_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
 
 
 def fixed_lets(mechanism: Mechanism) -> tuple[Let, ...]:
-    """Their cosines and sines, and the roots that are made of parameters alone."""
+    """The cosines and sines of these angles, and the roots that are made of parameters alone."""
     functions = ((cosine, sp.cos), (sine, sp.sin))
     angles = tuple(Let(f(a), g(a * DEGREE)) for a in fixed_angles(mechanism) for f, g in functions)
     return (*angles, *(let for _, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters))))
@@ -86,15 +86,15 @@ def fixed_squares(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
 def _fixed_roots(equations: tuple[sp.Expr, ...], parameters: tuple[sp.Symbol, ...]) -> tuple[tuple[sp.Expr, Let], ...]:
     """The square roots in the equations that are made of parameters alone, inner ones first, each with its name.
 
-    What a name hides is not expanded: a difference of squares stays a product of lengths.
+    A radicand under a name is not expanded: a difference of squares stays a product of lengths.
     """
     powers = {p for e in equations for p in sp.sympify(e).atoms(sp.Pow) if p.exp == sp.Rational(1, 2)}
     roots = [r for r in powers if r.free_symbols and r.free_symbols <= set(parameters)]
     found: list[tuple[sp.Expr, Let]] = []
     for number, root in enumerate(sorted(roots, key=lambda r: (sp.count_ops(r), str(r))), 1):
         radicand = sp.factor(root.base.xreplace({inner: let.name for inner, let in found}))
-        radicand = radicand.xreplace({s: real(s.name) for s in radicand.free_symbols})  # or it became a root of every factor
-        found.append((root, Let(real(f"fixed_length_{number}"), sp.sqrt(radicand), "a length of the machine")))
+        radicand = radicand.xreplace({s: real(s.name) for s in radicand.free_symbols})  # else SymPy splits the root
+        found.append((root, Let(real(f"fixed_length_{number}"), sp.sqrt(radicand), "a length made of parameters")))
     return tuple(found)
 
 
@@ -104,7 +104,7 @@ def all_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
 
 
 def with_fixed_names(mechanism: Mechanism, expression: sp.Expr) -> sp.Expr:
-    """The expression with the sines and cosines of fixed angles, and fixed roots, under their names."""
+    """The expression with the sines and cosines of fixed angles, and the roots of parameters, by their names."""
     functions = ((cosine, sp.cos), (sine, sp.sin))
     table = {g(a * DEGREE): f(a) for a in fixed_angles(mechanism) for f, g in functions}
     for root, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters)):
@@ -113,7 +113,7 @@ def with_fixed_names(mechanism: Mechanism, expression: sp.Expr) -> sp.Expr:
 
 
 def angles_of(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
-    """The joints that turn."""
+    """The angles of the rotary joints."""
     return tuple(j.symbol for j in mechanism.joints if j.is_angle)
 
 
@@ -145,8 +145,8 @@ def pose_closure(mechanism: Mechanism) -> Closure:
         return closure
     argument = heading_of(mechanism.chain)
     turns = (
-        _equation(mechanism, "cosine of the heading", sp.cos(argument) - real("cos_heading")),
-        _equation(mechanism, "sine of the heading", sp.sin(argument) - real("sin_heading")),
+        _equation(mechanism, "cos heading", sp.cos(argument) - real("cos_heading")),
+        _equation(mechanism, "sin heading", sp.sin(argument) - real("sin_heading")),
     )
     arguments = tuple(dict.fromkeys((*closure.arguments, argument)))
     return Closure(closure.equations + turns, arguments, closure.lets, closure.plane)
@@ -159,7 +159,7 @@ def closure_at(mechanism: Mechanism, known: Joint) -> Closure:
 
 
 def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ...]) -> Closure:
-    """A chain that turns about several axes: its position equations are split, its rotation is left to the solver."""
+    """The closure of a spatial chain: its position equations are split here, its rotation is split by the solver."""
     angles, lengths = (tuple(j.symbol for j in moving if j.is_angle is kind) for kind in (True, False))
     unknowns = Unknowns(angles, lengths, all_angles(mechanism), signs_of(mechanism))
     follows = mechanism.task.turning is not Turning.NONE
@@ -172,16 +172,16 @@ def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ..
 
 
 def heading_of(chain: Chain) -> sp.Expr:
-    """The one turn about z that a chain makes in front of its flange."""
-    bare, _ = flange_flips(chain)
-    turns = pose_of(bare).turns
+    """The angle by which a chain turns its flange about z. Raises `DescriptionError` where it turns otherwise."""
+    joints, _ = flange_flips(chain)
+    turns = pose_of(joints).turns
     if len(turns) != 1 or turns[0].axis != 2:
         raise DescriptionError("the chain must turn the flange about z alone: its rotation is not one turn about z")
     return turns[0].amount
 
 
 def offset_closure(mechanism: Mechanism, unknown: tuple[Joint, ...]) -> Closure:
-    """The closure of the position of a point off the flange; joints that are not unknown are frozen."""
+    """The closure of the position of a point off the flange; the joints that are not unknown are held at their reference."""
     if mechanism.chain is None:
         return _stated_closure(mechanism, dict(zip(COORDINATE_NAMES, OFFSET, strict=True)))
     factors = (*mechanism.chain.factors, *Txyz(*OFFSET).factors)
@@ -201,12 +201,12 @@ def offset_closure(mechanism: Mechanism, unknown: tuple[Joint, ...]) -> Closure:
 def _named_tool(
     mechanism: Mechanism, entry: sp.Expr, name: str, unknown: set[sp.Symbol], lets: list[Let]
 ) -> sp.Expr:
-    """The entry with its known part under one name: the solver need not look into it."""
+    """The entry with its known part under one name, which the solver treats as a symbol."""
     form = polynomial(entry, angles_of(mechanism), signs_of(mechanism))
     moving, known = split_known(form, unknown)
     if not is_compound(known):
         return moving + known
-    lets.append(Let(real(name), known, "the point seen from the last moving joint"))
+    lets.append(Let(real(name), known, "commanded point, in the frame of the last moving joint"))
     return moving + real(name)
 
 
@@ -226,10 +226,10 @@ def _position_closure(mechanism: Mechanism, position: sp.ImmutableMatrix) -> Clo
 def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: str = "span") -> Closure:
     """The stated equations; with an offset they hold for the flange, which keeps its orientation.
 
-    `known` says what is known of a rod: its "span" where the joints are wanted, its "pivot" where the position is.
+    known: the known part of a rod's vector: its "span" where the joints are unknown, its "pivot" where the position is.
     """
     flange = dict(zip(COORDINATE_NAMES, FLANGE, strict=True))
-    lets = tuple(Let(flange[c], real(c) - o, "the flange behind the point") for c, o in offset.items())
+    lets = tuple(Let(flange[c], real(c) - o, "position of the flange: the point less its offset") for c, o in offset.items())
     table = {real(c): flange[c] for c in offset}
     wanted = {j.symbol for j in mechanism.joints} if known == "span" else set(map(real, COORDINATE_NAMES))
     equations = [
@@ -242,14 +242,14 @@ def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: s
 
 
 def position_closure(mechanism: Mechanism) -> Closure:
-    """The stated equations as equations in the position, the joints known."""
+    """The stated equations with the joints known and the position unknown."""
     return _stated_closure(mechanism, {}, "pivot")
 
 
 def _rod_equation(
     mechanism: Mechanism, rod: Rod, table: dict[sp.Symbol, sp.Symbol], sought: tuple[str, set[sp.Symbol]]
 ) -> Equation:
-    """|plate - base|^2 = length^2, the known part of every coordinate under one name."""
+    """|plate - base|^2 = length^2, with the known part of every coordinate under one name."""
     word, wanted = sought
     unknown = {s for v in wanted for s in (v, sine(v), cosine(v))}
     lets: list[Let] = []
@@ -258,10 +258,11 @@ def _rod_equation(
         between = with_fixed_names(mechanism, (plate - base).xreplace(table))
         form = polynomial(between, all_angles(mechanism), signs_of(mechanism))
         moving, known = split_known(form, unknown)
-        side = 1 if word == "span" else -1  # a span is seen from the base, a pivot is where the rod is held
+        side = 1 if word == "span" else -1  # a span points from the base to the plate, a pivot is a point of the base
         known = side * known
         if is_compound(known):
-            lets.append(Let(real(f"{word}_{rod.name}_{name}"), known, f"rod {rod.name}"))
+            note = f"rod {rod.name}: {'known part of its vector' if word == 'span' else 'centre about which it swings'}"
+            lets.append(Let(real(f"{word}_{rod.name}_{name}"), known, "" if lets else note))
             known = lets[-1].name
         total += (moving + side * known) ** 2
     expression = reduce_units(total, all_angles(mechanism), signs_of(mechanism))
@@ -269,7 +270,7 @@ def _rod_equation(
 
 
 def _rod_scales(mechanism: Mechanism, rod: Rod) -> dict[sp.Symbol, sp.Expr]:
-    """2 * length * how fast an end of the rod moves with a joint or with the position, where that is a constant."""
+    """2 * length * |derivative of the rod's vector| by a joint or by the position, where that is a constant."""
     scales: dict[sp.Symbol, sp.Expr] = {}
     for symbol in (*(j.symbol for j in mechanism.joints), *(real(c) for c in COORDINATE_NAMES)):
         rates = [sp.diff(p - b, symbol) for p, b in zip(rod.plate, rod.base, strict=True)]

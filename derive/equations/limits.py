@@ -1,4 +1,4 @@
-"""The test of the limits, and which axis may be inside them on another of its turns where they refuse it."""
+"""The test of the limits; where it refuses, the axes that may be inside their limits on another turn."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from derive.ir.symbols import (
 
 
 def limits_program(mechanism: Mechanism) -> Program:
-    """Every axis, those with several turns first, then every quantity with limits of its own, inside its widened limits."""
+    """The test of every axis, those with several turns first, then of every quantity with limits, each widened by a tolerance."""
     turns = _other_turns(mechanism)
     body: list[Statement] = []
-    for joint in sorted(mechanism.joints, key=lambda j: not j.multi_turn):  # what a turn carries along follows it
+    for joint in sorted(mechanism.joints, key=lambda j: not j.multi_turn):  # a wrong turn is refused first
         reason = replace(about_joint(joint.symbol, Why.BELOW, unit=_unit(joint.is_angle)), turns=turns.get(joint.key, ()))
         body += _inside(joint.key, joint.axis, reason, f"limits of {joint.name}")
     if mechanism.limited:
@@ -38,7 +38,7 @@ def limits_program(mechanism: Mechanism) -> Program:
 
 
 def _inside(key: str, value: sp.Symbol, reason: Reason, note: str) -> tuple[Require, Require]:
-    """Not below the lower end, not above the upper one: the reason is given which of them, and how far."""
+    """Not below the lower end, and not above the upper one; each with its own reason and amount."""
     (lowest,), (highest,) = _ends(key)
     below, above = replace(reason, why=Why.BELOW, amount=lowest - value), replace(reason, why=Why.ABOVE, amount=value - highest)
     return (
@@ -56,13 +56,13 @@ def _value(quantity: Limited) -> sp.Symbol:
 
 
 def _other_turns(mechanism: Mechanism) -> dict[str, tuple[OtherTurn, ...]]:
-    """By the key of what has limits: the axes whose turn these may refuse, the last one first."""
+    """By the key of an axis or a quantity: the axes whose turn its limits may refuse, the last one first."""
     found = {j.key: (OtherTurn(j.name, j.axis, *_ends(j.key)),) for j in mechanism.period_joints}
     return found | {q.name: tuple(_of_quantity(q, mechanism)) for q in mechanism.limited if q.is_angle}
 
 
 def _of_quantity(quantity: Limited, mechanism: Mechanism) -> Iterator[OtherTurn]:
-    """Axes that turn a quantity once with each turn of their own: their limits, and how far it is from its own."""
+    """The axes that turn a quantity once per turn, inside their own limits and those of the quantity."""
     value = _value(quantity)
     low, high = _ends(quantity.name)
     for joint in reversed(mechanism.joints):

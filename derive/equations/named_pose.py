@@ -1,7 +1,7 @@
-"""The pose of a chain that turns about several axes, frame by frame, every entry of every frame under a name.
+"""The pose of a spatial chain, frame by frame, every entry of every frame under a name.
 
-`r13_at_a23` is the z axis behind A2 and A3, seen from the base; `x_at_a4` is where A4 turns. Parallel turns that
-follow each other are one turn by the sum of their angles, so that `cos(a2 + a3)` stays one cosine.
+`r13_at_a23` is the x component of the z axis behind A2 and A3, in the frame of the base; `x_at_a4` is the x of axis A4.
+Consecutive rotations about parallel axes are one rotation by the sum of their angles, so that `cos(a2 + a3)` stays one cosine.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ Column = tuple[sp.Expr, sp.Expr, sp.Expr]
 
 
 @dataclass(frozen=True)
-class Walk:
-    """The statements that name the frames; position, rotation by rows, and the screw of every factor."""
+class NamedPose:
+    """The statements that bind the frames; position, rotation by rows, and the screw of every factor."""
 
     statements: tuple[Let, ...]
     position: tuple[sp.Expr, ...]
@@ -40,15 +40,15 @@ class Walk:
     screws: tuple[Screw, ...]
 
 
-def walk(mechanism: Mechanism) -> Walk:
-    """Walk the chain from its base."""
+def named_pose(mechanism: Mechanism) -> NamedPose:
+    """The pose of the chain of a mechanism, composed from its base."""
     assert mechanism.chain is not None
-    walker = _Walker(mechanism)
+    frames = _Frames(mechanism)
     for factor in mechanism.chain.factors:
-        walker.pass_over(factor)
-    columns = walker.columns()
+        frames.append(factor)
+    columns = frames.columns()
     rows = tuple(columns[j][i] for i in range(3) for j in range(3))
-    return Walk(tuple(walker.lets.values()), tuple(walker.position), rows, tuple(walker.screws))
+    return NamedPose(tuple(frames.lets.values()), tuple(frames.position), rows, tuple(frames.screws))
 
 
 def _unit(axis: int) -> Column:
@@ -57,19 +57,19 @@ def _unit(axis: int) -> Column:
 
 
 @dataclass
-class _Walker:
+class _Frames:
     mechanism: Mechanism
     lets: dict[sp.Symbol, Let] = field(default_factory=dict)
     position: list[sp.Expr] = field(default_factory=lambda: [sp.Integer(0)] * 3)
     screws: list[Screw] = field(default_factory=list)
     _base: tuple[Column, ...] = (_unit(0), _unit(1), _unit(2))
-    """The columns of the frame before the turn that is being made."""
+    """The axes of the frame in front of the current rotation."""
     _turn: Factor | None = None
     _names: list[str] = field(default_factory=list)
-    """The joints passed so far: the last one names the frame."""
+    """The joints so far: the last one names the frame."""
 
-    def pass_over(self, factor: Factor) -> None:
-        """Go through one factor."""
+    def append(self, factor: Factor) -> None:
+        """Compose the pose with one more factor."""
         if factor.motion is Motion.SHIFT:
             direction = self.columns()[factor.axis]
             self.screws.append(self._screw(factor, direction))
@@ -84,7 +84,7 @@ class _Walker:
             self._base, self._turn = self.columns(), factor
 
     def columns(self) -> tuple[Column, ...]:
-        """The axes of the frame, seen from the base."""
+        """The axes of the frame, in the frame of the base."""
         if self._turn is None:
             return self._base
         matrix = self._turn.matrix()[:3, :3]
@@ -96,7 +96,7 @@ class _Walker:
         return tuple((c[0], c[1], c[2]) for c in columns)
 
     def _frame(self) -> str:
-        """What the frame is called: after the angles of its turn, or after the joint before a fixed turn."""
+        """The name of the frame: that of the angles of its rotation, or of the joint in front of a fixed rotation."""
         assert self._turn is not None
         angles = [a for a in angles_of(self.mechanism) if a in self._turn.amount.free_symbols]
         terms = terms_of(self._turn.amount, angles) or tuple((a, 1) for a in angles)

@@ -12,12 +12,12 @@ from derive.ir.program import Statement
 
 @dataclass(frozen=True)
 class Forward:
-    """The pose as statements: joints, the cosines and sines it needs, position; and the rotation's entries."""
+    """The pose as statements: joint values, cosines and sines, position; and the entries of the rotation."""
 
     statements: tuple[Statement, ...]
     position: tuple[sp.Expr, ...]
     rotation: tuple[sp.Expr, ...]
     slope: Slope | None = None
-    """Of the step that has two solutions: its sign is the assembly mode."""
+    """The slope of the step with two solutions: its sign is the assembly mode."""
 
 

@@ -1,4 +1,4 @@
-"""What the solver works on: unknowns and equations; and what a subproblem answers."""
+"""The problem that the solver works on, unknowns and equations, and the binding that a subproblem answers."""
 
 from __future__ import annotations
 
@@ -21,28 +21,27 @@ from derive.ir.symbols import real
 
 @dataclass(frozen=True)
 class Equation:
-    """expression = 0. `lets` name what it refers to; they are emitted when the equation is used."""
+    """expression = 0. `lets` bind the names in it; they are recorded when the equation is used."""
 
     label: str
     expression: sp.Expr
     lets: tuple[Let, ...] = ()
     scales: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    """The largest slope by an unknown, where it is made of parameters alone: margins are over it."""
+    """By an unknown: the largest derivative, where it is made of parameters alone. Margins are divided by it."""
     is_length: bool = True
-    """Whether its terms are lengths; those of a rotation are numbers."""
+    """Whether its terms are lengths; those of a rotation have no unit."""
 
 
 @dataclass(frozen=True)
 class Legs:
-    """The triangle of a two-root step that aims u at a point.
+    """The right triangle of a two-root step whose arm, with a lateral offset, points at a point (along, across).
 
     along cos u + across sin u = beside, along sin u - across cos u = root, and root² + beside² = distance².
     """
 
     root: sp.Symbol
-    """sigma times a root."""
+    """The distance ahead: sigma times the root of `square`."""
     square: sp.Expr
-    """What the root is taken of."""
     beside: sp.Expr
     distance: sp.Expr
     along: sp.Expr
@@ -55,38 +54,38 @@ class Legs:
 
 @dataclass(frozen=True)
 class Slope:
-    """The derivative of a two-root step by its unknown, over a scale of parameters: its sign is the branch."""
+    """The derivative of the equation of a two-root step by its unknown, with its scale: its sign is the branch."""
 
     step: sp.Symbol
-    """The unknown that it finds."""
+    """The unknown for which the step solves."""
     value: sp.Expr
-    """Equals sigma times something not negative at every solution."""
+    """At every solution sigma times a number that is not negative."""
     scale: sp.Expr
     reach: tuple[sp.Expr, sp.Expr] | None = None
-    """(h, e) where the step has solutions for |e| <= h, for steps before it."""
+    """(h, e) where the step has solutions for |e| <= h; earlier steps then move their angles to meet this."""
     legs: Legs | None = None
-    """Where the root, near zero, multiplies what rounding leaves of its radicand, for steps behind it."""
+    """The triangle whose root, near zero, magnifies the rounding error of its radicand."""
 
     @property
     def sigma(self) -> sp.Symbol:
-        """Which of the two roots is meant: +1 or -1."""
+        """The sign that chooses between the two roots: +1 or -1."""
         return sign_of(self.step)
 
 
 def sign_of(step: sp.Symbol) -> sp.Symbol:
-    """The name of the sign that chooses between the two roots of a step, by the unknown that it finds."""
+    """The name of the sign that chooses between the two roots of a step, by its unknown."""
     return real(f"sigma_{step.name}")
 
 
 @dataclass(frozen=True)
 class Measure:
-    """What must not vanish for `angle` to be determined, over a scale of parameters."""
+    """The value that must not vanish for `angle` to be determined, with the scale that it is divided by."""
 
     angle: sp.Symbol
     value: sp.Expr
     scale: sp.Expr
     word: str = "free"
-    """What happens where it vanishes: the angle is "free", or two solutions "meet" of which the machine has one."""
+    """Where it vanishes the angle is "free", or two solutions "meet" of which the machine has one."""
 
     @property
     def name(self) -> str:
@@ -96,7 +95,7 @@ class Measure:
 
 @dataclass(frozen=True)
 class Binding:
-    """The answer of a subproblem: statements that bind unknowns, and where they lose or double their meaning."""
+    """The answer of a subproblem: statements that bind unknowns, and the slope and measure that vanish in its singularities."""
 
     rule: str
     unknowns: tuple[sp.Symbol, ...]
@@ -105,14 +104,14 @@ class Binding:
     measure: Measure | None = None
     new_equations: tuple[Equation, ...] = ()
     residual: sp.Expr | None = None
-    """What vanishes if the equations it was solved from agree with each other, a square of a length."""
+    """An expression that vanishes if the equations used agree with each other: a squared length."""
     cosine_alone: bool = False
     yields_to_a_sum: bool = False
     """Whether a sum of angles may be the better unknown."""
 
     @property
     def rank(self) -> tuple[bool, bool, bool, int]:
-        """Smaller is better: both functions known, a measure that cannot vanish, one root, short."""
+        """Smaller is better: cosine and sine both known, no measure, one root, few operations."""
         size = sum(int(sp.count_ops(s.value)) for s in self.statements if isinstance(s, Let))
         return (self.cosine_alone, self.measure is not None, self.slope is not None, size)
 
@@ -127,31 +126,31 @@ class Problem:
     units: tuple[sp.Symbol, ...]
     """All angles, known ones too, whose sine and cosine symbols obey sin^2 + cos^2 = 1."""
     free: Mapping[sp.Symbol, sp.Expr]
-    """The reference value of each angle, in radians, taken where nothing determines it."""
+    """The reference of each angle, in radians: its value where nothing determines it."""
     scale: sp.Expr
     """A length of the machine, made of parameters only, never zero."""
     signs: tuple[sp.Symbol, ...] = ()
     positive: tuple[sp.Expr, ...] = ()
-    """Normal forms of the quantities whose negative mirror is excluded."""
+    """Normal forms of the quantities that the description states to be positive."""
     pending: tuple[sp.Symbol, ...] = ()
-    """Angles that follow from a sum once its other terms are known: unknown, but nothing to solve for."""
+    """Angles that follow from a sum once its other terms are known: unknown, but not solved for."""
     is_overdetermined: bool = False
-    """Whether there is an equation too many, so that what is left over is a residual: two-root steps must not use it up."""
+    """Whether there is one equation too many: it is left as a residual, and no two-root step may use it."""
     turns: tuple[Factor, ...] = ()
-    """The turns that the commanded rotation is the product of, for equations that are written when angles are known."""
+    """The rotations whose product is the commanded one; they give further equations whenever angles become known."""
     rotation: tuple[sp.Symbol, ...] = ()
     """The entries of the commanded rotation, by rows; none where it is not commanded."""
     columns: tuple[int, ...] = (0, 1, 2)
-    """The columns of the commanded rotation that are followed."""
+    """The columns of the commanded rotation that the task prescribes."""
     position: tuple[sp.Symbol, ...] = ()
     """The coordinates of the commanded position."""
     squares: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     """The squares of lengths that are roots of parameters."""
     definitions: Mapping[sp.Symbol, sp.Expr] | None = None
-    """What known names stand for, as far as they are polynomials: for tests of zero."""
+    """The polynomials that known names stand for, to test whether an expression is zero."""
 
     def scale_of(self, equation: Equation) -> sp.Expr:
-        """What the terms of an equation are compared with: a length of the machine, or one."""
+        """The scale of the terms of an equation: a length of the machine, or one."""
         return self.scale if equation.is_length else sp.Integer(1)
 
     def atoms(self) -> tuple[sp.Symbol, ...]:
@@ -166,14 +165,14 @@ class Problem:
         return (*(u for u in self.lengths if u in present), *angles)
 
     def reduce(self, expression: sp.Expr) -> sp.Expr:
-        """The normal form of an expression with the known names written out: zero if and only if it is zero."""
+        """The normal form of an expression with known names written out: zero if and only if the expression is."""
         definitions = self.definitions or {}
         while expression.free_symbols & definitions.keys():
             expression = expression.xreplace(dict(definitions))
         return reduce_units(expression, self.units, self.signs)
 
     def tidy(self, expression: sp.Expr) -> sp.Expr:
-        """The expression with the squares of signs written as one, names left as they are."""
+        """The expression with the squares of signs replaced by one, and names not written out."""
         return reduce_units(expression, (), self.signs)
 
     def is_never_zero(self, expression: sp.Expr) -> bool:
@@ -182,7 +181,7 @@ class Problem:
         return bool(reduced.is_nonzero or reduced.xreplace({DEGREE: sp.pi / 180}).is_nonzero)
 
     def is_positive(self, value: sp.Expr) -> bool:
-        """Whether a value is a positive multiple of a quantity whose negative mirror is excluded, or of several."""
+        """Whether a value is a positive multiple of a quantity that is stated to be positive, or a product of such quantities."""
         if all(factor in self.positive for factor in sp.Mul.make_args(value)):
             return True
         ratios = [sp.cancel(value / quantity).xreplace({DEGREE: sp.pi / 180}) for quantity in self.positive]

@@ -1,7 +1,8 @@
-"""A rotation that a caller gives: refused where it is none, repaired where it is one by few digits, otherwise used bit for bit.
+"""A rotation that a caller gives: refused where it is none, repaired where rounding has bent it, otherwise used bit for bit.
 
-Frames come from single precision, too. The direction of the tool comes first: z is made of length one, x perpendicular to it
-and of length one, y = z × x. Asked once a call, before everything else; all other programs read a rotation that is one.
+A frame may have passed through single precision. The repair keeps the direction of the tool: z is normalised, x is made
+perpendicular to it and normalised, and y = z × x. It runs once a call, before everything else; all other programs read a
+rotation that is orthogonal to all digits.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ _PAIRS = ((0, 1), (0, 2), (1, 2))
 
 @cache
 def rotation_program() -> Program:
-    """r11 … r33 as given → the same as they are used: of every mechanism that reads a rotation."""
+    """r11 … r33 as given → as they are used. The program is the same for every mechanism that reads a rotation."""
     columns = [_GIVEN[:, k] for k in range(3)]
     sizes = [Let(real(f"uneven_{c}"), sp.Abs(v.dot(v) - 1)) for c, v in zip(_COLUMNS, columns, strict=True)]
     angles = [Let(real(f"askew_{_COLUMNS[i]}{_COLUMNS[j]}"), sp.Abs(columns[i].dot(columns[j]))) for i, j in _PAIRS]
@@ -68,7 +69,7 @@ def rotation_program() -> Program:
 
 
 def _small(errors: list[Let], why: Why) -> Require:
-    """The largest error is told."""
+    """The condition that all errors are small; the amount of its reason is the largest of them."""
     conditions = [sp.Le(let.name, ROTATION) for let in errors]
     return Require(sp.And(*conditions), Status.BAD_INPUT, reason=about_input(why, amount=_largest([let.name for let in errors])))
 
@@ -79,22 +80,22 @@ def _largest(values: Sequence[sp.Expr]) -> sp.Expr:
 
 
 def _repaired() -> tuple[list[Let], sp.Matrix]:
-    """The direction of z; what of x is perpendicular to it; and what is perpendicular to both: each over its length."""
+    """Unit vectors along z, along the part of x that is perpendicular to z, and along z × x."""
     x, z = _GIVEN[:, 0], _GIVEN[:, 2]
     along_z, divisor_x = real("along_z"), real("divisor_x")
     unit_z, across_z = (sp.Matrix([real(f"{word}_z{k}") for k in (1, 2, 3)]) for word in ("unit", "across"))
     lets = [
-        *_length(z, "z", "the direction of the tool is kept"),
+        *_length(z, "z", "z keeps its direction, which is that of the tool"),
         *(Let(n, v / real("divisor_z")) for n, v in zip(unit_z, z, strict=True)),
         Let(along_z, x.dot(unit_z)),
         *(Let(n, v - along_z * u) for n, v, u in zip(across_z, x, unit_z, strict=True)),
-        *_length(across_z, "x", "x is made perpendicular to it"),
+        *_length(across_z, "x", "x is made perpendicular to z"),
     ]
     return lets, sp.Matrix.hstack(across_z / divisor_x, unit_z.cross(across_z) / divisor_x, unit_z)
 
 
 def _length(vector: sp.Matrix, word: str, note: str) -> tuple[Let, Let]:
-    """The length of a column and what may be divided by: nearly one, but of what is no rotation it may be nothing."""
+    """The length of a column, and a divisor that is never zero: a matrix that is no rotation may have a column of zeros."""
     length = real(f"length_{word}")
     nonzero = Select(sp.Gt(length, sp.Rational(1, 2)), length, sp.Integer(1))
     return Let(length, Root(vector.dot(vector)), note), Let(real(f"divisor_{word}"), nonzero)

@@ -1,7 +1,8 @@
-"""What the commanded rotation says of the turns of a chain that are still unknown: L^-1 R S^-1 = M.
+"""The equations of the commanded rotation for the rotations of a chain that are still unknown: L^-1 R S^-1 = M.
 
-It is split again whenever an angle is known: the known turns at both ends are taken to the side of the commanded rotation,
-turn by turn, each entry under a name: `r13_from_a12` is r13 as seen from behind A1 and A2, `r13_before_a6` in front of A6.
+They are written again whenever an angle becomes known: the known rotations at both ends are moved to the side of the commanded
+one, one after the other, each entry under a name: `r13_from_a12` is r13 in the frame behind A1 and A2, `r13_before_a6` is r13
+of the frame in front of A6.
 """
 
 from __future__ import annotations
@@ -24,16 +25,16 @@ from derive.ir.symbols import (
 )
 
 _MOST_UNKNOWN = 2
-"""No subproblem takes an equation with more unknown angles."""
+"""No subproblem takes an equation with more unknown angles than this."""
 
 
 def rotations(problem: Problem) -> tuple[Equation, ...]:
-    """What the commanded rotation says of the turns that are still unknown, the known ones at both ends taken away."""
+    """The entries of L^-1 R S^-1 = M that depend on unknown angles."""
     return tuple(e for e in _entries(problem) if problem.unknowns_of(e.expression))
 
 
 def conditions(problem: Problem) -> tuple[Equation, ...]:
-    """The entries that no unknown turn moves: what must hold of the known turns alone."""
+    """The entries of L^-1 R S^-1 = M without unknown angles: conditions on the known ones."""
     return tuple(e for e in _entries(problem) if not problem.unknowns_of(e.expression) and e.expression != 0)
 
 
@@ -57,17 +58,17 @@ def _entries(problem: Problem) -> tuple[Equation, ...]:
 
 @dataclass(frozen=True)
 class _Side:
-    """The turns that have been taken away at one end."""
+    """The known rotations at one end of the chain, which names of entries end in."""
 
     word: str
     end: str
     joints: tuple[str, ...] = ()
     """Base first."""
     fixed: int = 0
-    """How many oblique fixed turns there are since the last joint: one by right angles makes no new entries."""
+    """The number of oblique fixed rotations since the last joint: one by right angles only permutes the entries."""
 
     def behind(self, joints: tuple[str, ...], turn: Factor) -> _Side:
-        """One turn further inwards."""
+        """The side with one more rotation."""
         if joints:
             return replace(self, joints=(*self.joints, *joints) if self.word == "from" else (*joints, *self.joints), fixed=0)
         is_oblique = any(entry not in (-1, 0, 1) for entry in turn.matrix())
@@ -75,7 +76,7 @@ class _Side:
 
     @property
     def suffix(self) -> str:
-        """What tells the entries there from all others: `_from_a12`, `_from_a12_turned`, `_before_flange`."""
+        """The end of the names of entries: `_from_a12`, `_from_a12_turned`, `_before_flange`."""
         turned = ("", "_turned", *(f"_turned_{n}" for n in range(2, self.fixed + 1)))
         if self.joints:
             return f"_{self.word}_{name_of(tuple((real(name), 1) for name in self.joints))}{turned[self.fixed]}"
@@ -100,7 +101,7 @@ def _entry_equations(
 
 
 def _needed(lets: Sequence[Let], expression: sp.Expr) -> tuple[Let, ...]:
-    """The lets that an expression refers to, through other lets, in order."""
+    """The statements that bind the names in an expression, directly or by other names, in order."""
     wanted = set(expression.free_symbols)
     kept: list[Let] = []
     for let in reversed(lets):
@@ -115,12 +116,12 @@ def _unknown(problem: Problem, turn: Factor) -> bool:
 
 
 def _word(problem: Problem, turn: Factor) -> tuple[str, ...]:
-    """The joints of a turn, for names."""
+    """The names of the joints of a rotation."""
     return tuple(a.name for a in problem.units if a in turn.amount.free_symbols)
 
 
 def _matrix(problem: Problem, turn: Factor, lets: list[Let]) -> sp.Matrix:
-    """The matrix of a known turn; the cosine and sine of a sum of angles under their names."""
+    """The matrix of a known rotation; the cosine and sine of a sum of angles by their names."""
     matrix = sp.Matrix(turn.matrix()[:3, :3])
     table: dict[sp.Expr, sp.Expr] = {}
     for function in sorted(matrix.atoms(sp.sin, sp.cos), key=sp.default_sort_key):
@@ -134,7 +135,7 @@ def _matrix(problem: Problem, turn: Factor, lets: list[Let]) -> sp.Matrix:
 
 
 def _named(problem: Problem, entries: sp.Matrix, word: str, lets: list[Let]) -> sp.Matrix:
-    """The entries under names of their own, where they are more than a name."""
+    """The entries by names of their own, where they are more than a name."""
     named = sp.zeros(3, 3)
     for i in range(3):
         for j in range(3):

@@ -1,4 +1,4 @@
-"""Sines and cosines under their names: `cos_a12` for the cosine of A1 + A2."""
+"""Sines and cosines by their names: `cos_a12` for the cosine of A1 + A2."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from derive.ir.symbols import (
 
 
 def named_trigonometry(mechanism: Mechanism, values: Iterable[sp.Expr]) -> tuple[tuple[Let, ...], list[sp.Expr]]:
-    """The values with every sine and cosine under its name (`cos_a12`), and these names bound."""
+    """The statements that bind every sine and cosine (`cos_a12`), and the values with these names."""
     values = [sp.sympify(v) for v in values]
     lets: dict[sp.Symbol, Let] = {}
     table: dict[sp.Expr, sp.Expr] = {}

@@ -51,7 +51,7 @@ class Let:
     @property
     def comment(self) -> str:
         """What the reader is told."""
-        turn = f"{self.turn_of}: its turn" if self.turn_of else ""
+        turn = f"{self.turn_of}: whole turns added" if self.turn_of else ""
         return "; ".join(text for text in (self.note, turn) if text)
 
 

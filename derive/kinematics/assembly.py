@@ -1,4 +1,4 @@
-"""Assembly modes: which sign of the forward slope is which way to assemble the loop, and what the inverse must refuse."""
+"""Assembly modes: which sign of the forward slope belongs to which mode, and the poses that the inverse must refuse."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _SAMPLES = 256
 
 @dataclass(frozen=True)
 class Assembled:
-    """Forward kinematics with its assembly mode chosen by a parameter, and the margin that the mode is the sign of."""
+    """Forward kinematics with its assembly mode chosen by a parameter, and the margin whose sign is the mode."""
 
     forward: Forward
     margin: sp.Expr | None
@@ -49,14 +49,14 @@ class Assembled:
 
 
 def assembled(mechanism: Mechanism, forward: Forward) -> Assembled:
-    """Bind the assembly sign to the machine's parameter, by the description's indicator."""
+    """Bind the assembly sign to the parameter of the machine, as the indicator of the description tells."""
     if mechanism.assembly is None or forward.slope is None:
         return Assembled(forward, None)
     first = mechanism.assembly.signs[0] * _orientation(mechanism, forward)
     chosen: sp.Expr = first * (1 - 2 * real(mechanism.assembly.parameter))
     if mechanism.assembly.handedness != 1:
         chosen = Select(sp.Gt(with_fixed_names(mechanism, mechanism.assembly.handedness), 0), chosen, -chosen)
-    sign = Let(ASSEMBLY_SIGN, chosen, "assembly mode of this machine")
+    sign = Let(ASSEMBLY_SIGN, chosen, "assembly mode of this machine: the sign of the determinant of its rods")
     margin = forward.slope.value / forward.slope.scale
     return Assembled(replace(forward, statements=(sign, *forward.statements)), margin)
 
@@ -82,7 +82,7 @@ def _orientation(mechanism: Mechanism, forward: Forward) -> int:
 def assembly_checks(
     mechanism: Mechanism, done: Assembled, solved: tuple[Statement, ...], offset: bool
 ) -> tuple[Statement, ...]:
-    """What a solved branch must satisfy: on this machine's side, and far enough from losing control of the plate."""
+    """The checks of a solved branch: the assembly mode of this machine, and the least distance from a type 2 singularity."""
     if done.margin is None or mechanism.assembly is None:
         return ()
     bound = {s.name for s in solved if isinstance(s, Let)} | {real(c) for c in "xyz"}
@@ -105,7 +105,7 @@ def assembly_checks(
 
 
 def bound_checks(mechanism: Mechanism, offset: bool) -> tuple[Statement, ...]:
-    """Sizes that must not be exceeded at the solution."""
+    """The bounds that the description sets on quantities, checked at the solution."""
     seen = {real(c): real(f"flange_{c}") for c in "xyz"} if offset else {}
     checks: list[Statement] = []
     for b in mechanism.bounds:
@@ -119,7 +119,7 @@ def bound_checks(mechanism: Mechanism, offset: bool) -> tuple[Statement, ...]:
 
 
 def _beyond(bound: Bound, size: sp.Expr, largest: sp.Expr) -> Reason:
-    """What a bound tells: of the sine of an angle, how much the angle is too large."""
+    """The reason of a bound; for the sine of an angle its amount is in degrees of the angle."""
     if isinstance(bound.largest, sp.sin):
         beyond = (angle_of_sine(size) - angle_of_sine(largest)) / DEGREE
         return about(bound.meaning, Why.BEYOND_LARGEST_ANGLE, beyond, Unit.ANGLE)

@@ -1,4 +1,4 @@
-"""Which two-root step is which branch: the sign of its slope must agree with the description's indicator."""
+"""Branch assignment: a branch belongs to the two-root step whose slope has the sign of the branch's indicator."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _SAMPLES = 64
 
 @dataclass(frozen=True)
 class Assignment:
-    """A branch, the step that decides it, and whether the step's sign is the branch's (+1) or its opposite (-1)."""
+    """A branch, the slope of the step that decides it, and whether both have the same sign (+1) or opposite signs (-1)."""
 
     branch: Branch
     slope: Slope
@@ -51,24 +51,24 @@ class Assignment:
 
     @property
     def sigma(self) -> sp.Symbol:
-        """The branch's own sign: +1 is byte 1."""
+        """The sign of the branch, an integer: +1 is byte 1."""
         return count(f"sigma_{self.branch.name}")
 
     @property
     def factor(self) -> sp.Symbol:
-        """The same as a number that multiplies."""
+        """The same sign as a real number, which multiplies."""
         return real(f"sign_{self.branch.name}")
 
     def margin(self, mechanism: Mechanism) -> sp.Expr:
-        """The signed, scaled slope: positive is byte 1."""
+        """The slope over its scale, with the sign of the branch: positive is byte 1."""
         value = sp.cancel(self.orientation * self.slope.value / self.slope.scale)
         return reduce_units(value, all_angles(mechanism)) if value.is_polynomial() else value
 
 
 def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool = False) -> tuple[Assignment, ...]:
-    """Find the step of every branch, or refuse.
+    """Find the step of every branch. Raises `DescriptionError` where there is not exactly one.
 
-    `optional_zero` compares a machine without its optional lengths: the steps of the offset problem mean the
+    optional_zero: compare on a machine without its optional lengths. The steps of the offset problem correspond to the
     branches of the machine only where the point is the flange itself.
     """
     slopes = inverse.derivation.slopes
@@ -94,7 +94,7 @@ def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_ze
 def steps_and_rest(
     mechanism: Mechanism, inverse: Inverse, forward: Forward
 ) -> tuple[tuple[Assignment, ...], tuple[Branch, ...]]:
-    """The steps of the branches that a step decides, and the branches that none does; every step must be a branch."""
+    """The assignments of the branches that a step decides, and the branches that no step decides. Every step needs a branch."""
     branches = tuple(b for b in mechanism.branches if not b.is_crossing)
     named = replace(mechanism, branches=branches)
     signs, indicators = _signs(named, inverse, forward, False)
@@ -127,7 +127,7 @@ def _signs(
 
 
 def with_branch_signs(statements: Sequence[Statement], assignments: Sequence[Assignment]) -> tuple[Statement, ...]:
-    """The derivation with every sign replaced by that of its branch, which becomes a number here."""
+    """The derivation with the sign of every step replaced by that of its branch, converted to a real number here."""
     table = {a.slope.sigma: a.orientation * a.factor for a in assignments}
     named = ((a, f"{a.branch.name}: +1 {a.branch.names[0]}, -1 {a.branch.names[1]}") for a in assignments)
     signs = (Let(a.factor, ToReal(a.sigma), note) for a, note in named)

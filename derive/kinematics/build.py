@@ -1,4 +1,4 @@
-"""From a description to all programs of a mechanism."""
+"""The build: from a description to all programs of a mechanism."""
 
 from __future__ import annotations
 
@@ -86,12 +86,12 @@ from derive.solver.solve import Unsolved
 
 
 def build(mechanism: Mechanism) -> Kinematics:
-    """Derive everything. Raises `Unsolved` or `DescriptionError` where the description does not allow it."""
+    """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
     _count(mechanism)
     if mechanism.is_platform:
         return _platform(mechanism)
     if mechanism.search is not None:
-        return _searching(mechanism)
+        return _scanned(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
     forward = closed.forward
     inverse = solve_pose(mechanism)
@@ -128,7 +128,7 @@ def build(mechanism: Mechanism) -> Kinematics:
 
 
 def _platform(mechanism: Mechanism) -> Kinematics:
-    """A platform that moves with its whole pose: forward kinematics iterates, one determinant is the margin."""
+    """The programs of a platform that moves with its whole pose: forward kinematics iterates, det A is the margin."""
     inverse = solve_pose(mechanism)
     if inverse.derivation.slopes or mechanism.branches:
         raise DescriptionError("a platform that moves freely has no branches: its closure must determine every joint")
@@ -150,8 +150,8 @@ def _platform(mechanism: Mechanism) -> Kinematics:
     return _finished(mechanism, programs, (Margin(MARGIN, -1, "type 2"),))
 
 
-def _searching(mechanism: Mechanism) -> Kinematics:
-    """A chain that one parameter keeps from having a closed form: searched along one joint, one determinant is the margin."""
+def _scanned(mechanism: Mechanism) -> Kinematics:
+    """The programs of a chain without a closed form for one parameter: one joint is scanned, the determinant is the margin."""
     both = solve_both(mechanism)
     statements, margins = margin_statements(both)
     determinant, scaled = determinant_margin(both)
@@ -172,7 +172,7 @@ def _searching(mechanism: Mechanism) -> Kinematics:
 
 
 def _count(mechanism: Mechanism) -> None:
-    """More conditions than joints or coordinates cannot be met, and no step would notice."""
+    """Refuse more conditions than joints or coordinates: they cannot be met, and no later step would notice."""
     rows, joints, equations = jacobian_rows(mechanism), mechanism.joints, mechanism.equations
     commanded = f"{len(rows)} quantities ({', '.join(rows)})"
     if len(rows) > len(joints):
@@ -182,7 +182,7 @@ def _count(mechanism: Mechanism) -> None:
 
 
 def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...]) -> Kinematics:
-    """Everything together, with what depends on parameters alone moved into the setup."""
+    """The bundle of all programs, with the values that depend on parameters alone moved into the setup."""
     parameters = machine_parameters(mechanism)
     constants = [o.name for o in setup_program(mechanism, parameters).outputs]
     unsettled = windows(mechanism)  # drives may change these later
@@ -230,7 +230,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
 
 
 def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -> None:
-    """A free name that is nobody's input is a mistake of the derivation: find it here, not in a generated file."""
+    """Refuse a name that is read and is no input: a mistake of the derivation, found here and not in a generated file."""
     allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
     allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
     allowed |= {j.symbol.name for j in mechanism.joints} if program.name == "from_joints" else set()
@@ -242,7 +242,7 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
 
 
 def _check_outputs(program: Program) -> None:
-    """What a call answers is a number: of every angle a turn has been chosen."""
+    """Refuse an output that is an angle without its turns: a call answers numbers."""
     if angles := [name for name, kind in output_types(program).items() if kind in (Type.ANGLE, Type.HEADING)]:
         raise BrokenProgram(f"{program.name}: nothing has chosen a turn of {', '.join(angles)}")
 
@@ -250,7 +250,7 @@ def _check_outputs(program: Program) -> None:
 def _last(
     mechanism: Mechanism, closed: Assembled, statements: tuple[Statement, ...], *, offset: bool
 ) -> tuple[Statement, ...]:
-    """What must hold at a solution of the inverse, beyond the closure."""
+    """The checks of a solution of the inverse, besides the closure."""
     return (*assembly_checks(mechanism, closed, statements, offset), *bound_checks(mechanism, offset))
 
 
@@ -281,7 +281,7 @@ def _offset_configuration(
 
 
 def _projection_program(mechanism: Mechanism) -> Program:
-    """The nearest rotation that the flange can have; of a direction, any twist about it."""
+    """The rotation nearest to the commanded one that the flange can take; of a direction, with any twist about it."""
     if mechanism.task.turning in (Turning.DIRECTION, Turning.FULL):
         own = [Output(r.name, r) for r in ROTATION_ENTRIES]
         return assemble("projection", (), own)
@@ -294,12 +294,12 @@ def _projection_program(mechanism: Mechanism) -> Program:
 
 
 def _turns_in_a_coupling(mechanism: Mechanism) -> bool:
-    """Whether a coupling with this mechanism needs to know how its frame turns: the task's rows do not say all of it."""
+    """Whether a coupling with this mechanism needs all six rows of the twist: the task has fewer."""
     return (mechanism.is_position or mechanism.is_orientation) and _freedom(mechanism) is not Freedom.ZERO
 
 
 def _freedom(mechanism: Mechanism) -> Freedom:
-    """Stated closures keep their orientation or follow all of it; a chain's rotation may turn about z with the joints."""
+    """How the flange turns. With stated equations it keeps its orientation or follows all of it; a chain may turn it about z."""
     if mechanism.task.turning is Turning.FULL:
         return Freedom.THREE
     if mechanism.chain is None:
@@ -310,7 +310,7 @@ def _freedom(mechanism: Mechanism) -> Freedom:
 
 
 def _image_program(mechanism: Mechanism) -> Program:
-    """All orientations of the flange: one of them, and the axis about which it turns, in both frames."""
+    """The orientations that the flange can take: one of them, and the axis of its rotation in both frames."""
     zero = sp.eye(3)
     axis = sp.Matrix([0, 0, 1])
     if mechanism.chain is not None and _freedom(mechanism) is not Freedom.THREE:

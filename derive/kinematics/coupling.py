@@ -1,10 +1,10 @@
-"""What an orientation kinematics carries, and so what it can be combined with.
+"""Coupling of a position and an orientation kinematics: which offsets of the orientation kinematics are allowed.
 
-Its end point has parts that the flange, the wrist between its axes, and the tool hold. A shift along the axis of the
-turns before it is the flange's, one along the axis of the turns behind it is the tool's, any other is the wrist's.
-A flange that keeps its orientation carries all of them. One that the position axes turn is not known before them, so
-that only these may be there: the flange's part along the axis that the flange turns about, and the tool's part as far
-as the commanded rotation, which is met, says where it points.
+The end point of an orientation kinematics is a sum of shifts. A shift along the axis of all rotations before it is fixed to the
+flange; a shift along the axis of all rotations behind it is fixed to the tool; any other lies in the wrist between its axes.
+A flange that keeps its orientation allows all of them. If the position axes turn the flange, its orientation is not known
+before they are solved. Then two parts are allowed: the part fixed to the flange along the axis about which the flange turns,
+and the part fixed to the tool along directions that the commanded rotation gives.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ from derive.ir.symbols import (
 
 _ALONG = real("flange_along")
 _UNNOTICED = real("unnoticed_shift")
-_ACROSS = "off the axis that the flange turns about"
-_BETWEEN = "between the axes: only a flange that keeps its orientation tells where that is"
-_UNMET = "turns in a way that nothing commands"
+_ACROSS = "distance of the flange's part from the axis about which the flange turns"
+_BETWEEN = "offset between the axes of the wrist: allowed where the flange keeps its orientation"
+_UNMET = "part of the tool in directions that are not commanded"
 _ROTATION = sp.Matrix(3, 3, list(ROTATION_ENTRIES))
 _MET: dict[Turning, tuple[int, ...]] = {
     Turning.NONE: (),
@@ -57,19 +57,19 @@ _MET: dict[Turning, tuple[int, ...]] = {
     Turning.DIRECTION: (2,),
     Turning.FULL: (0, 1, 2),
 }
-"""The columns of the commanded rotation that are met whatever the flange's turn is."""
+"""The columns of the commanded rotation that are met for every turn of the flange."""
 
 
 @dataclass(frozen=True)
-class Carried:
-    """The end point in parts: as the flange sees it, as the tool sees it, and the size of what is between."""
+class EndPoint:
+    """The end point in parts: one fixed to the flange, one fixed to the tool, and the size of the offset between the axes."""
 
     flange: tuple[sp.Expr, ...]
     tool: tuple[sp.Expr, ...]
     wrist: sp.Expr
 
 
-def carried_by(mechanism: Mechanism) -> Carried:
+def end_point_of(mechanism: Mechanism) -> EndPoint:
     """The parts of the end point of a chain."""
     assert mechanism.chain is not None
     factors = mechanism.chain.factors
@@ -84,21 +84,21 @@ def carried_by(mechanism: Mechanism) -> Carried:
             tool[factor.axis] += factor.amount
         else:
             between.append(factor.amount)
-    return Carried(tuple(flange), tuple(tool), _size(between))
+    return EndPoint(tuple(flange), tuple(tool), _size(between))
 
 
 def coupling_programs(mechanism: Mechanism) -> tuple[Program, ...]:
-    """What a coupling asks of an orientation kinematics: see `Kinematics`."""
+    """The programs that a coupling calls of an orientation kinematics: see `Kinematics`."""
     found = (_compatible(mechanism), _carried(mechanism))
     return found if _MET[mechanism.task.turning] else (*found, _total_image(mechanism))
 
 
 def _compatible(mechanism: Mechanism) -> Program:
-    parts = carried_by(mechanism)
+    parts = end_point_of(mechanism)
     across = [s - a * _ALONG for s, a in zip(parts.flange, FLANGE_AXIS, strict=True)]
     unmet = [s for k, s in enumerate(parts.tool) if k not in _MET[mechanism.task.turning]]
     lengths = [p.symbol for p in mechanism.parameters if p.unit == "u"]
-    body: list[Statement] = [Let(_UNNOTICED, HELD * sp.Add(*map(sp.Abs, lengths)), "as much may turn with the flange")]
+    body: list[Statement] = [Let(_UNNOTICED, HELD * sp.Add(*map(sp.Abs, lengths)), "offsets up to this are not noticed")]
     if any(parts.flange):
         body += [*finite(FLANGE_AXIS), *_along(parts), Let(real("flange_offset"), _size(across), _ACROSS)]
         body.append(_unnoticed("flange_offset"))
@@ -109,12 +109,12 @@ def _compatible(mechanism: Mechanism) -> Program:
 
 
 def _unnoticed(name: str) -> Require:
-    """The shift of that name is too small to be noticed."""
+    """The condition that the shift of this name is too small to be noticed."""
     return Require(sp.Le(real(name), _UNNOTICED), Status.INVALID_COUPLING, reason=about_machine(Why.TURNS_WITH_THE_FLANGE))
 
 
 def _carried(mechanism: Mechanism) -> Program:
-    parts, met = carried_by(mechanism), _MET[mechanism.task.turning]
+    parts, met = end_point_of(mechanism), _MET[mechanism.task.turning]
     tool = sp.Matrix([s if k in met else 0 for k, s in enumerate(parts.tool)])
     place = _ROTATION * tool
     body: list[Statement] = []
@@ -125,7 +125,7 @@ def _carried(mechanism: Mechanism) -> Program:
 
 
 def _total_image(mechanism: Mechanism) -> Program:
-    """The image on a flange: of a turn about one axis, and whether that is the flange's; without a turn, the flange's image."""
+    """The orientations that tool and flange can take together, and the distance between both axes of rotation."""
     assert mechanism.chain is not None
     own = sp.Matrix(flange_rotation(mechanism.chain))
     outputs = [Output(f"zero_{r.name}", v) for r, v in zip(ROTATION_ENTRIES, _ROTATION * own, strict=True)]
@@ -141,13 +141,13 @@ def _total_image(mechanism: Mechanism) -> Program:
     return assemble("total_image", finite(read), [*outputs, Output("apart", apart)])
 
 
-def _along(parts: Carried) -> tuple[Let, ...]:
+def _along(parts: EndPoint) -> tuple[Let, ...]:
     along = sp.Add(*[s * a for s, a in zip(parts.flange, FLANGE_AXIS, strict=True)])
-    return (Let(_ALONG, along, "what the flange holds, along the axis that it turns about"),)
+    return (Let(_ALONG, along, "the flange's part along the axis about which the flange turns"),)
 
 
 def _size(values: Sequence[sp.Expr]) -> sp.Expr:
-    """The length of a vector; a single entry has no square root."""
+    """The length of a vector; with a single entry its absolute value."""
     found = [v for v in values if v != 0]
     if len(found) < 2:
         return sp.Abs(found[0]) if found else sp.Integer(0)

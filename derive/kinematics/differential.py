@@ -1,4 +1,4 @@
-"""The Jacobian, from A x' + B q' = 0, and the singularity margins that multiply to its determinant."""
+"""The Jacobian, from A x' + B q' = 0, and the singularity margins whose product is its determinant."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from derive.description.mechanism import (
 )
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closure import with_fixed_names
-from derive.equations.named_pose import walk
+from derive.equations.named_pose import named_pose
 from derive.equations.pose_at_axes import (
     Forward,
 )
@@ -57,7 +57,7 @@ from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.plate.plate import platform_jacobian
 
 _ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
-"""Of a twist: along and about the axes of the base, and about the x and y of the tool, which tilt its z."""
+"""The rows of a twist: along and about the axes of the base, and about the x and y axes of the tool, which tilt its z axis."""
 _TURNS: dict[Turning, tuple[str, ...]] = {
     Turning.NONE: (),
     Turning.ABOUT_Z: ("turn z",),
@@ -67,12 +67,12 @@ _TURNS: dict[Turning, tuple[str, ...]] = {
 
 
 def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
-    """The task's rows: commanded positions, then the commanded turn."""
+    """The rows of the task: commanded positions, then the commanded rotation."""
     return (*mechanism.task.position, *_TURNS[mechanism.task.turning])
 
 
 def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
-    """Rows of the task by axes; rotary axes per radian."""
+    """The Jacobian: a row per quantity of the task, a column per axis; rotary axes per radian."""
     if mechanism.is_platform:
         solved, twists = platform_jacobian(mechanism, _motor_matrix(mechanism))
         return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, len(mechanism.joints)))
@@ -81,13 +81,13 @@ def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
 
 
 def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
-    """All six rows of the twist of a chain's end, whatever the task is: what a coupling asks for."""
+    """All six rows of the twist at the end of a chain, whatever its task: a coupling needs them."""
     lets, values = _per_motor(mechanism, _by_screws(mechanism, _ROWS[:6]))
     return assemble("twist", (*forward.statements, *lets), _entries_of(values, len(mechanism.joints)))
 
 
 def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
-    """The entries by rows at a pose that forward kinematics has found, and statements that they need besides."""
+    """The statements for the Jacobian at a pose that forward kinematics has found, and its entries by rows."""
     if mechanism.chain is not None:
         return _per_motor(mechanism, _by_screws(mechanism, jacobian_rows(mechanism)))
     matrix, naming = _by_closure(mechanism)
@@ -96,7 +96,7 @@ def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[
 
 
 def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Let, ...], list[sp.Expr]]:
-    """The entries by motors, their sines and cosines under names."""
+    """The entries per velocity of a motor; their sines and cosines by names."""
     coupled = matrix * _motor_matrix(mechanism)
     planar = mechanism.chain is not None and not is_spatial(mechanism.chain)
     entries = [sp.expand_mul(e) if planar else e for e in coupled]
@@ -109,7 +109,7 @@ def _entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:
 
 
 def _by_screws(mechanism: Mechanism, rows: Sequence[str]) -> sp.Matrix:
-    """A serial chain: every factor moves the end as a screw (z × p), scaled by how each joint moves the factor."""
+    """The Jacobian of a serial chain: every factor moves its end as a screw, times the derivative of the factor by the joint."""
     assert mechanism.chain is not None
     screws, position = _screws(mechanism, mechanism.chain)
     columns = []
@@ -129,9 +129,9 @@ def _by_screws(mechanism: Mechanism, rows: Sequence[str]) -> sp.Matrix:
 
 
 def _screws(mechanism: Mechanism, chain: Chain) -> tuple[tuple[Screw, ...], sp.ImmutableMatrix]:
-    """The screws of a chain and the place of its end; of a chain in space in the names of its frames."""
+    """The screws of a chain and the position of its end; for a spatial chain in the names of its frames."""
     if is_spatial(chain):
-        return walk(mechanism).screws, sp.ImmutableMatrix([real(c) for c in COORDINATE_NAMES])
+        return named_pose(mechanism).screws, sp.ImmutableMatrix([real(c) for c in COORDINATE_NAMES])
     pose = pose_of(chain)
     return pose.screws, pose.position
 
@@ -144,7 +144,7 @@ def _twist(screw: Screw, position: sp.ImmutableMatrix) -> sp.Matrix:
 
 
 def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]:
-    """Stated equations: -A^-1 B with A = dΦ/dx, B = dΦ/dq, by the adjugate; singular where det A vanishes (type 2)."""
+    """The Jacobian of stated equations: -A^-1 B with A = dΦ/dx, B = dΦ/dq, by the adjugate; type 2 singular where det A = 0."""
     closure = sp.Matrix([with_fixed_names(mechanism, e) for e in mechanism.equations])
     by_pose = closure.jacobian([real(c) for c in mechanism.task.position])
     by_joints = closure.jacobian([j.symbol for j in mechanism.joints])
@@ -159,7 +159,7 @@ def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]
     statements: tuple[Statement, ...] = (
         *lets,
         *more,
-        Let(determinant, entries.det(), "of the closure by the position: zero in a type 2 singularity"),
+        Let(determinant, entries.det(), "determinant dPhi/dx: zero in a type 2 singularity"),
         Require(determined, Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED)),
         Let(divisor, Select(determined, determinant, sp.Integer(1))),
     )
@@ -169,7 +169,7 @@ def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]
 def _entries(
     mechanism: Mechanism, matrix: sp.Matrix, names: Sequence[str]
 ) -> tuple[sp.Matrix, tuple[Let, ...]]:
-    """The entries of a matrix of derivatives under names of their own, `slope_<equation>_by_<unknown>`."""
+    """The entries of a matrix of derivatives by names of their own, `slope_<equation>_by_<unknown>`."""
     trigonometric, values = named_trigonometry(mechanism, list(matrix))
     lets: list[Let] = [*trigonometric]
     entries = []
@@ -181,31 +181,31 @@ def _entries(
 
 
 def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:
-    """How the motors move the joints: the identity, and the gear couplings."""
+    """The derivative of the joints by the motors: the identity and the gear couplings."""
     motors = [j.motor for j in mechanism.joints]
     return sp.Matrix(len(motors), len(motors), [sp.diff(j.motor + j.coupling, m) for j in mechanism.joints for m in motors])
 
 
 @dataclass(frozen=True)
 class Factor:
-    """A candidate margin: a slope or measure over its scale, at axis values."""
+    """A candidate for a margin: a slope or a measure over its scale, at axis values."""
 
     name: str
     value: sp.Expr
     is_length: bool = False
-    """Whether it has the user's unit, because the machine has no length to compare it with."""
+    """Whether it has the unit of length of the user, because the machine has no length to divide it by."""
     is_signed: bool = True
 
     @property
     def lets(self) -> tuple[Let, ...]:
-        """The margin; of a length, whether it is more than what leaves an axis free."""
+        """The margin; for a length, 1 where it determines the axis and 0 where it does not."""
         margin = real(f"margin_{self.name}")
         if not self.is_length:
             return (Let(margin, self.value),)
         length = real(f"length_{self.name}")
         other = Select(sp.Lt(length, -FREE_ANGLE), sp.Integer(-1), sp.Integer(0)) if self.is_signed else sp.Integer(0)
         told = Select(sp.Gt(length, FREE_ANGLE), sp.Integer(1), other)
-        return Let(length, self.value), Let(margin, told, "1, and 0 where nothing determines the axis")
+        return Let(length, self.value), Let(margin, told, "0 where nothing determines the axis, else 1 or -1")
 
 
 def factor_of(mechanism: Mechanism, found: Assignment | Measure) -> Factor:
@@ -219,7 +219,7 @@ def factor_of(mechanism: Mechanism, found: Assignment | Measure) -> Factor:
 def singularity_program(
     mechanism: Mechanism, statements: Sequence[Statement], factors: Sequence[Factor], jacobian: Program
 ) -> tuple[Program, tuple[Margin, ...]]:
-    """The margins that multiply to the determinant of the Jacobian, and their integer exponents."""
+    """The margins whose product, with integer exponents, is the determinant of the Jacobian."""
     lets = [let for f in factors for let in f.lets]
     lengths = {f.name: Output(f"length_{f.name}", f.lets[0].name) for f in factors if f.is_length}
     told = {f.name: Output(f.name, f.lets[-1].name) for f in factors}
@@ -259,7 +259,7 @@ def _exponents(mechanism: Mechanism, margins: Program, jacobian: Program) -> lis
 
 
 def _independent(logs: Sequence[NDArray[np.float64]]) -> list[int]:
-    """The margins that no earlier ones make up: the measure of a two-root step is the size of its slope."""
+    """The margins that are no product of earlier ones: the measure of a two-root step is the absolute value of its slope."""
     own: list[int] = []
     for k in range(len(logs)):
         columns = np.stack([logs[i] for i in (*own, k)] + [np.ones_like(logs[k])], axis=-1)

@@ -1,4 +1,4 @@
-"""Forward kinematics: from axis values to the pose, and everything that is read off a set of axis values."""
+"""Forward kinematics: from axis values to the pose, and the values of the inverse derivation at given axis values."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from derive.equations.closure import (
     position_closure,
     signs_of,
 )
-from derive.equations.named_pose import walk
+from derive.equations.named_pose import named_pose
 from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import Problem
 from derive.equations.trigonometry import named_trigonometry
@@ -59,10 +59,10 @@ from derive.solver.solve import Derivation, solve
 
 
 def pose_at_axes(mechanism: Mechanism) -> Forward:
-    """The pose of a mechanism at its axis values; quantities that must be positive are required to be."""
+    """The pose of a mechanism at its axis values; it requires the quantities to be positive that the description says are."""
     checks = (*finite([j.axis for j in mechanism.joints]), *joint_lets(mechanism), *_positive(mechanism))
     if mechanism.chain is not None and is_spatial(mechanism.chain):
-        return _walked(mechanism, checks)
+        return _frame_by_frame(mechanism, checks)
     if mechanism.chain is not None:
         pose = pose_of(mechanism.chain)
         lets, values = named_trigonometry(mechanism, [*pose.position, *pose.rotation])
@@ -77,16 +77,16 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
     return Forward(known, position_values, tuple(sp.eye(3)), slope)
 
 
-def _walked(mechanism: Mechanism, checks: tuple[Statement, ...]) -> Forward:
-    """The pose of a chain that turns about several axes, frame by frame."""
-    walked = walk(mechanism)
+def _frame_by_frame(mechanism: Mechanism, checks: tuple[Statement, ...]) -> Forward:
+    """The pose of a spatial chain."""
+    composed = named_pose(mechanism)
     names = (*(real(c) for c in COORDINATE_NAMES), *ROTATION_ENTRIES)
-    pose = tuple(Let(n, v) for n, v in zip(names, (*walked.position, *walked.rotation), strict=True))
-    return Forward((*checks, *walked.statements, *pose), names[:3], names[3:])
+    pose = tuple(Let(n, v) for n, v in zip(names, (*composed.position, *composed.rotation), strict=True))
+    return Forward((*checks, *composed.statements, *pose), names[:3], names[3:])
 
 
 def _solve_for_position(mechanism: Mechanism) -> Derivation:
-    """The stated closure solved for x, y and z: the same peeling, the joints known."""
+    """The stated closure solved for x, y and z by the same solver, with the joints known."""
     closure = position_closure(mechanism)
     problem = Problem(
         angles=(),
@@ -104,18 +104,18 @@ def _solve_for_position(mechanism: Mechanism) -> Derivation:
 
 
 def _in_assembly_mode(derivation: Derivation, mechanism: Mechanism) -> tuple[Statement, ...]:
-    """The derivation on the side that the machine is assembled on; where it does not close, no assembly is possible."""
+    """The derivation in the assembly mode of the machine; where the loop does not close it is IMPOSSIBLE."""
     sides = {s.sigma: ASSEMBLY_SIGN for s in derivation.slopes}
     chosen = (rewritten(s, lambda e: e.xreplace(sides)) for s in derivation.statements)
     return tuple(replace(s, otherwise=Status.IMPOSSIBLE) if isinstance(s, Require) else s for s in chosen)
 
 
 def _positive(mechanism: Mechanism) -> tuple[Statement, ...]:
-    """Forward kinematics refuses the mirror that the machine does not have."""
+    """The conditions that quantities are positive: forward kinematics refuses the mirror image of the machine."""
     checks: list[Statement] = []
     lengths = {j.symbol for j in mechanism.joints if not j.is_angle}
     bounded = {j.symbol for j in mechanism.joints if j.domain is not None}
-    for value in (v for v in mechanism.positive if not v.free_symbols <= bounded):  # a domain says it already
+    for value in (v for v in mechanism.positive if not v.free_symbols <= bounded):  # a domain already requires it
         scale = SCALE if value.free_symbols & lengths else sp.Integer(1)
         lets, (named,) = named_trigonometry(mechanism, [value])
         condition = sp.Ge(named, -BOUNDARY * scale)
@@ -124,7 +124,7 @@ def _positive(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 
 def _domains(mechanism: Mechanism) -> tuple[Require, ...]:
-    """A joint without turns has one value for every pose: beyond its domain forward and inverse would not agree."""
+    """The conditions that joints are in their domains: beyond, forward and inverse kinematics would not agree."""
     checks: list[Require] = []
     for joint in mechanism.joints:
         if joint.domain is None:
@@ -137,7 +137,7 @@ def _domains(mechanism: Mechanism) -> tuple[Require, ...]:
 
 
 def at_point(forward: Forward) -> Forward:
-    """The same for a point off the flange: x, y and z are where that point is."""
+    """Forward kinematics of a point off the flange: x, y and z are its position."""
     flange = {real(c): real(f"flange_{c}") for c in COORDINATE_NAMES}
     statements: list[Statement] = [rewritten(s, lambda e: e.xreplace(flange)) for s in forward.statements]
     statements = [replace(s, name=flange.get(s.name, s.name)) if isinstance(s, Let) else s for s in statements]
@@ -165,9 +165,9 @@ def _rotation_outputs(forward: Forward) -> list[Output]:
 
 
 def derivation_at_axes(mechanism: Mechanism, inverse: Inverse, forward: Forward) -> tuple[Statement, ...]:
-    """What the inverse derivation's names are at given axis values: for slopes and measures.
+    """The names of the inverse derivation at given axis values, for slopes and measures.
 
-    Solved sines and cosines become those of the joints; all other names keep their definition.
+    Sines and cosines that the inverse solves for are those of the given joints; all other names keep their definitions.
     """
     table = _angle_values(mechanism, inverse)
     trigonometric = {f(a): Let(f(a), g(v)) for a, v in table.items() for f, g in ((sine, sp.sin), (cosine, sp.cos))}
@@ -187,7 +187,7 @@ def derivation_at_axes(mechanism: Mechanism, inverse: Inverse, forward: Forward)
 
 
 def _angle_values(mechanism: Mechanism, inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:
-    """Every angle that the derivation names, through the joints."""
+    """Every angle that the derivation names, as an expression of the joints."""
     table: dict[sp.Symbol, sp.Expr] = {a: a for a in angles_of(mechanism)}
     for total in inverse.derivation.sums:
         table[total.symbol] = sp.Add(*[table[a] * s for a, s in total.terms])

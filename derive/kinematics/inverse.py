@@ -1,4 +1,4 @@
-"""Inverse kinematics: one branch of a commanded pose, and of a commanded point off the flange."""
+"""Inverse kinematics: one branch for a commanded pose, or for a commanded point off the flange."""
 
 from __future__ import annotations
 
@@ -60,12 +60,12 @@ from derive.solver.solve import Derivation, solve
 
 @dataclass(frozen=True)
 class Inverse:
-    """A solved inverse problem: what names the pose, the derivation, and what frames it."""
+    """A solved inverse problem: its closure, its derivation, and the statements in front of it."""
 
     closure: Closure
     derivation: Derivation
     naming: tuple[Statement, ...]
-    """Statements that the derivation refers to: the heading, the tool, frozen joints, references."""
+    """Statements whose names the derivation reads: the heading, the tool, frozen joints, references."""
     moving: tuple[Joint, ...]
     frozen: tuple[Joint, ...] = ()
 
@@ -79,14 +79,14 @@ def solve_pose(mechanism: Mechanism) -> Inverse:
 
 
 def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:
-    """Solve the closure of a commanded pose for all joints but one, which is known: the equations need not agree."""
+    """Solve the closure of a commanded pose for all joints but one that is known. The equations need not agree."""
     closure = closure_at(mechanism, known)
     moving = tuple(j for j in mechanism.joints if j != known)
     return Inverse(closure, _solve(mechanism, closure, moving, is_overdetermined=True), closure.lets, moving)
 
 
 def solve_offset(mechanism: Mechanism) -> Inverse:
-    """Solve the closure of a commanded point; joints that a position cannot determine are frozen."""
+    """Solve the closure of a commanded point; joints that a position does not determine are frozen."""
     frozen = _frozen_joints(mechanism)
     moving = tuple(j for j in mechanism.joints if j not in frozen)
     closure = offset_closure(mechanism, moving)
@@ -120,7 +120,7 @@ def _solve(
 
 
 def _frozen_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
-    """The last turning joints of a chain, as many as the position leaves open."""
+    """The last rotary joints of a chain, as many as the position does not determine."""
     excess = len(mechanism.joints) - len(mechanism.task.position)
     if mechanism.chain is None or excess <= 0:
         return ()
@@ -130,20 +130,20 @@ def _frozen_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
 
 
 def heading_parts(mechanism: Mechanism) -> tuple[sp.Expr, sp.Expr]:
-    """What the cosine and sine of the nearest heading are proportional to: tool direction first, then twist."""
+    """Cosine and sine of the nearest heading, up to a common factor: the tool direction comes first, then the twist."""
     assert mechanism.chain is not None
     relative = sp.Matrix(3, 3, ROTATION_ENTRIES) * flange_rotation(mechanism.chain).T
     return relative[0, 0] + relative[1, 1], relative[1, 0] - relative[0, 1]
 
 
 def heading_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
-    """The heading of the commanded rotation; there is none where the tool points exactly the wrong way."""
+    """The heading of the commanded rotation; there is none where the tool points exactly the opposite way."""
     along, across = real("heading_along"), real("heading_across")
     length, divisor = real("heading_length"), real("heading_divisor")
     determined = sp.Gt(length, FREE_ANGLE)
     cos_value, sin_value = heading_parts(mechanism)
     return (
-        Let(along, cos_value, "projection: the tool direction swings to the machine's, the twist is kept"),
+        Let(along, cos_value, "nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept"),
         Let(across, sin_value),
         Let(length, Root(along**2 + across**2)),
         Require(determined, Status.UNREACHABLE, reason=about_machine(Why.OPPOSITE)),
@@ -160,7 +160,7 @@ def _heading(mechanism: Mechanism) -> tuple[Statement, ...]:
 def inverse_program(
     name: str, mechanism: Mechanism, inverse: Inverse, statements: tuple[Statement, ...], last: tuple[Statement, ...] = ()
 ) -> Program:
-    """The program of one branch: checks, derivation with its branch signs named, `last` what must hold then, axis values."""
+    """The program of one branch: checks of inputs, the derivation with its branch signs, the checks `last`, axis values."""
     in_plane: tuple[Statement, ...] = ()
     if inverse.closure.plane is not None:
         distance = sp.Abs(real("z") - inverse.closure.plane)
@@ -183,7 +183,7 @@ def inverse_program(
 
 
 def of_angle(let: Let, joint: Joint, resolved: set[sp.Symbol]) -> Let:
-    """An axis value of the joint's angle, where that is known by itself."""
+    """The axis value from the joint's angle itself, where that is known with its turns."""
     if joint.symbol not in resolved or joint.axis in resolved:
         return let
     direction = Atan2(sine(joint.symbol), cosine(joint.symbol))

@@ -1,13 +1,13 @@
-"""What the build hands to the emitters: every program of one mechanism, and what its names mean.
+"""The bundle that the build gives to the emitters: every program of one mechanism, and what its names mean.
 
 Names that programs share:
 
     link_length_1, offset_a1, ...   parameters and constants: outputs of `setup`, free in all other programs
     axis_a1, ref_a1                 axis value and its reference (degrees or user's length unit)
-    turn_a1                         commanded period number (an integer as a real), 0 = open
+    turn_a1                         commanded period number, an integer; 0 = none is commanded
     sigma_elbow                     branch sign: +1 is byte 1, -1 is byte 2
-    x, y, z, r11 … r33              frame: position, rotation by rows (columns are the axes of the frame); where a caller gives
-                                    it, `rotation_program` has made it one before: no other program checks it
+    x, y, z, r11 … r33              frame: position, rotation by rows (columns are the axes of the frame). A caller's rotation
+                                    has passed `rotation_program` before: no other program checks it
     point_x, point_y, point_z       the point off the flange (the tool offset), in flange coordinates
 """
 
@@ -38,8 +38,8 @@ class Margin:
     kind: str
     """"type 1" (serial) or "type 2" (parallel)."""
     length: str | None = None
-    """Of a machine without a length to compare with: the output that is the distance, in the user's unit. The margin itself
-    is then 1, or 0 where the distance leaves an axis free: a number without a unit, but none that tells how far it is."""
+    """For a machine without a length to divide by: the output that is the distance, in the user's unit. The margin itself
+    is then 1, or 0 where the distance leaves an axis free: it has no unit, but does not tell the distance."""
 
     @property
     def factor(self) -> str:
@@ -49,19 +49,19 @@ class Margin:
 
 @dataclass(frozen=True)
 class Inverted:
-    """What was measured of the inverse and of the Jacobian."""
+    """The measured errors of the inverse and of the Jacobian."""
 
     round_trip: float
     jacobian: float
     solutions: int
     """Real solutions found by multi-start root finding, agreeing with the slots at every sampled pose."""
     missed: tuple[int, int] | None = None
-    """Of a search: how many solutions no slot held, of how many in all."""
+    """With a root scan: how many solutions no slot held, of how many in all."""
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """What the independent witness measured, rounded up so that it reads the same on every machine."""
+    """The measurements of the independent witness, rounded up so that every computer prints the same."""
 
     poses: int
     closure_residual: float
@@ -73,40 +73,40 @@ class Evidence:
 class Kinematics:
     """All programs of one mechanism.
 
-    setup            parameters (all of `parameters`, flags and signs as numbers) → every constant that the other programs read.
+    setup            parameters (all of `parameters`, flags Boolean, signs integers) → every constant that other programs read.
                      Its conditions are what Initialize refuses; all carry NOT_INITIALIZED.
-                     Among its outputs per axis: `unlimited_a1` (0/1), `lower_a1`, `upper_a1` (effective limits as
-                     GetAxisProperties reports them), and `check_limits` (0/1).
-    setup_less_windows   as setup, less `lowest_a1` `highest_a1` `single_a1` `mid_a1` of the axes: where drives hand over limits
-                     of their own, `parameters.limits_of_axis` gives these; None where no axis has turns to choose from
+                     Among its outputs per axis: `unlimited_a1` (a flag), `lower_a1`, `upper_a1` (effective limits as
+                     GetAxisProperties reports them), and `check_limits` (a flag).
+    setup_less_windows   as setup, without `lowest_a1` `highest_a1` `single_a1` `mid_a1` of the axes: where drives hand over
+                     limits of their own, `parameters.limits_of_axis` computes these; None where no axis has several turns
     forward          axis_* → x y z r11…r33, and `branch_<name>` per branch: the signed margin, positive = byte 1,
                      at most 1e-11 in size = byte 3 (the branches coincide)
     forward_from     axis_*, start_x … start_z, start_r11 … start_r33 → as forward, which is iterative and starts at a home pose;
                      None where forward kinematics does not iterate
     orientation      axis_* → r11…r33
-    branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*; one branch, periods included, limits not
-    search_given     as branch → what the search of that branch is given; None where there is a closed form
-    from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None where no search gives the joints
-    derived_branch   the same, step by step as it was derived: what is unrolled
-    limits           axis_* → nothing; its conditions are the axis limits and the limits of coupled quantities
-    singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size; also the length of a
+    branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*: one branch, with periods, without limits
+    search_given     as branch → the arguments of the root scan of that branch; None where there is a closed form
+    from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None without a root scan
+    derived_branch   as branch, step by step as it was derived; the optimiser unrolls it
+    limits           axis_* → no outputs; its conditions are the axis limits and the limits of coupled quantities
+    singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size; and the length of a
                      margin that has one
     jacobian         axis_* → j11, j12, … (row, column from 1): rows are `rows`, columns the axes; per radian
-    image            nothing → zero_r11…zero_r33, rot_x rot_y rot_z (base), u_x u_y u_z (flange): R·u = rot
-    projection       r11…r33 → the same, projected to the nearest rotation the flange can have; None where not chosen
-    offset_branch    x y z of the point, point_*, sigma_*, turn_*, ref_* → axis_*; None where the interface is not offered
+    image            no inputs → zero_r11…zero_r33, rot_x rot_y rot_z (base), u_x u_y u_z (flange): R·u = rot
+    projection       r11…r33 → the nearest rotation that the flange can take; None where the task has no rotation
+    offset_branch    x y z of the point, point_*, sigma_*, turn_*, ref_* → axis_*; None without the offset interface
     offset_configuration   axis_*, point_* → `branch_<name>`; None likewise
-    twist            axis_* → j11 … of all six rows, x y z turn x turn y turn z; None where no coupling asks for it, and where
-                     the flange keeps its orientation: then the rows of `jacobian` are all there are
+    twist            axis_* → j11 … of all six rows, x y z turn x turn y turn z; None where no coupling needs it, and where
+                     the flange keeps its orientation: then the rows of `jacobian` are all
 
-    Of an orientation kinematics, None for any other. The flange that carries it turns about the line flange_axis_* (as the
-    flange sees it) = base_axis_* (as the machine does); both are zero for a flange that turns freely:
+    For an orientation kinematics, None for any other. The flange under it turns about the axis flange_axis_* in the frame of
+    the flange, base_axis_* in that of the machine; both are zero for a flange that turns freely:
 
-    compatible       flange_axis_* → nothing; its conditions are what a flange that turns can carry
+    compatible       flange_axis_* → no outputs; its conditions say which offsets a flange that turns allows
     carried          flange_axis_*, base_axis_*, r11…r33 commanded (those it reads) → x y z from the flange to the end point
-    total_image      r11…r33 one orientation of the flange, flange_axis_*, base_axis_* → the image of both together as `image`
-                     has it, if the flange keeps its orientation or turns about the same axis: `apart`, the sine of the
-                     angle between the two axes, says whether it is the same
+    total_image      r11…r33 one orientation of the flange, flange_axis_*, base_axis_* → the image of both together, as in
+                     `image`, if the flange keeps its orientation or turns about the same axis: it does where `apart`, the
+                     sine of the angle between the two axes, is zero
     """
 
     mechanism: Mechanism
@@ -138,11 +138,11 @@ class Kinematics:
     total_image: Program | None = None
     evidence: Evidence | None = None
     self_test: SelfTest | None = None
-    """Calls for a test on the controller; None until they are made."""
+    """The cases of the self-test on the controller; None until they are made."""
 
     @property
     def shared(self) -> tuple[Program, ...]:
-        """The programs that several of these call: one that is called comes before the one that calls it."""
+        """The programs that several of these call, each before its callers."""
         return shared(self.programs)
 
     @property

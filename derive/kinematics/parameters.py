@@ -46,7 +46,7 @@ from derive.plate.plate import machine_constants, machine_statements
 
 CHECK_LIMITS = "check_limits"
 TIE_OF_LENGTHS = real("tie")
-"""What squared distances of linear axes tie within."""
+"""Squared distances of linear axes that differ by less than this are equal."""
 _LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
 
 
@@ -72,7 +72,7 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
 
 
 def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
-    """The assembly mode of a closed loop, and how near to losing the plate it may come."""
+    """The assembly mode of a closed loop, and its least distance from a type 2 singularity."""
     if mechanism.is_platform:
         return [_least_margin()]
     if mechanism.assembly is None:
@@ -109,9 +109,9 @@ def setup_program(
     *,
     has_settings: bool = False,
 ) -> Program:
-    """Check every parameter; outputs are the parameters themselves, the effective limits, and what is read of what was hoisted.
+    """Check every parameter; the outputs are the parameters, the effective limits, and the hoisted values that are `read`.
 
-    Where drives have settings, what `limits_of_axis` gives is left to it: nothing here may depend on it.
+    has_settings: drives hand over limits, so that the outputs of `limits_of_axis` are left to it.
     """
     body: list[Statement] = [condition for p in parameters for condition in _range_of(p)]
     for constraint in mechanism.constraints:
@@ -132,7 +132,7 @@ def setup_program(
         body += machine_statements(mechanism)
         outputs += machine_constants(mechanism)
     else:
-        body.append(Let(SCALE, machine_scale(parameters), "a length of the machine"))
+        body.append(Let(SCALE, machine_scale(parameters), "characteristic length of the machine"))
         outputs.append(Output(SCALE.name, SCALE))
     if chooses_by_lengths(mechanism):
         body.append(Let(TIE_OF_LENGTHS, TIE_SHARE**2 * SCALE**2, "squared distances closer than this are equal"))
@@ -145,29 +145,29 @@ def setup_program(
 
 
 def _as_constant(parameter: Parameter) -> Output:
-    """The parameter as the other programs read it: a sign is a number that multiplies."""
+    """The parameter as other programs read it: a sign is a real number, which multiplies."""
     own = input_of(parameter)
     return Output(parameter.name, ToReal(own) if is_count(own) else own)
 
 
 def limited_keys(mechanism: Mechanism) -> tuple[str, ...]:
-    """What has limits, by the last part of the names of its limits."""
+    """The keys of the axes and quantities with limits: the last part of the names of these limits."""
     return (*(joint.key for joint in mechanism.joints), *(quantity.name for quantity in mechanism.limited))
 
 
 def chooses_by_lengths(mechanism: Mechanism) -> bool:
-    """Whether linear axes alone tell which branch is nearest to the reference."""
+    """Whether the distance of a branch to the reference is measured by linear axes alone."""
     return bool(mechanism.branches) and not any(j.is_angle for j in mechanism.joints)
 
 
 def machine_scale(parameters: Sequence[Parameter]) -> sp.Expr:
-    """The sum of the lengths of the description; one user's unit where there is none."""
+    """The sum of the lengths of the description; one unit of length where there is none."""
     own = [p for p in parameters if p.role in _LENGTHS or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)]
     return sp.Add(*[sp.Abs(p.symbol) for p in own]) if has_length(parameters) else sp.Integer(1)
 
 
 def has_length(parameters: Iterable[Parameter]) -> bool:
-    """Whether a machine has a length that is never zero: what its other lengths can be compared with."""
+    """Whether a machine has a length that is never zero, by which others can be divided."""
     return any(p.role in _LENGTHS for p in parameters)
 
 
@@ -178,24 +178,24 @@ def _range_of(parameter: Parameter) -> tuple[Require, ...]:
     if parameter.role is Role.SIGN:
         condition = sp.Or(sp.Eq(input_of(parameter), 1), sp.Eq(input_of(parameter), -1))
         return (_needed(condition, note),)
-    bare = real(parameter.name)  # without assumptions: SymPy must not decide `length > 0` by itself
+    value = real(parameter.name)  # without assumptions: SymPy must not decide `length > 0` by itself
     low = sp.Float(parameter.low) if parameter.low % 1 else sp.Integer(int(parameter.low))
     high = sp.Float(parameter.high) if parameter.high % 1 else sp.Integer(int(parameter.high))
     if parameter.role is Role.SIGNED_LENGTH:
-        apart = sp.Or(sp.Gt(bare, 0), sp.Lt(bare, 0))  # a comparison takes what is no number, a size does not
-        inside = sp.And(apart, sp.Ge(bare, low), sp.Le(bare, min(high, LARGEST)))
+        nonzero = sp.Or(sp.Gt(value, 0), sp.Lt(value, 0))  # NaN fails a comparison; the absolute value of NaN is an error
+        inside = sp.And(nonzero, sp.Ge(value, low), sp.Le(value, min(high, LARGEST)))
         return (_needed(inside, note),)
-    above = sp.Gt(bare, low) if parameter.low_open else sp.Ge(bare, low)
-    return (_needed(sp.And(above, sp.Le(bare, min(high, LARGEST))), note),)
+    above = sp.Gt(value, low) if parameter.low_open else sp.Ge(value, low)
+    return (_needed(sp.And(above, sp.Le(value, min(high, LARGEST))), note),)
 
 
 def _needed(condition: sp.Basic, what: str) -> Require:
-    """A condition on parameters, in words."""
+    """A condition on parameters, with its sentence."""
     return Require(condition, Status.NOT_INITIALIZED, reason=about_parameters(what))
 
 
 def _inequality(condition: sp.Basic) -> sp.Basic:
-    """An equation as a positive comparison, which not-a-number fails."""
+    """The condition with an equation as a positive comparison, which NaN fails."""
     return sp.Le(sp.Abs(condition.lhs - condition.rhs), 0) if isinstance(condition, sp.Eq) else condition
 
 
@@ -209,7 +209,7 @@ Fallback = tuple[tuple[sp.Basic, sp.Expr, sp.Expr], ...]
 
 
 def _fallback(joint: Joint) -> Fallback:
-    """(condition, lower, upper) where no limit is given: a carried pitch, or what the closure allows."""
+    """(condition, lower, upper) where no limit is given: the range of an axis with a pitch, or the domain of its joint."""
     found: list[tuple[sp.Basic, sp.Expr, sp.Expr]] = []
     if joint.pitch != 0 and joint.limit_range is not None:
         low, high = (sp.Integer(int(v)) for v in joint.limit_range)
@@ -221,7 +221,7 @@ def _fallback(joint: Joint) -> Fallback:
 
 
 def _without_limits(joint: Joint) -> str:
-    """What limits an axis that is given none: see `_fallback`."""
+    """The limits of an axis for which none are given, in words: see `_fallback`."""
     if joint.domain is not None:
         low, high = joint.domain
         return f"joint value {low:g} .. {high:g}" if high < float(LARGEST) else f"joint value {low:g} or more"
@@ -241,19 +241,19 @@ def _limits(key: str, fallback: Fallback) -> tuple[Let, ...]:
         high_value = Select(given, upper, Select(condition, top, sp.Integer(0)) if condition != sp.true else top)
         free = sp.And(free, sp.Not(condition))
     return (
-        Let(unlimited, free, f"{key}: no limit"),
+        Let(unlimited, free, f"{key}: whether it has no limits"),
         Let(low, low_value),
         Let(high, high_value),
     )
 
 
 def _effective(key: str) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
-    """The names of the lower and the upper limit, and of whether there is none."""
+    """The names of the lower limit, of the upper limit, and of the flag that there is none."""
     return real(f"effective_lower_{key}"), real(f"effective_upper_{key}"), flag(f"unlimited_{key}")
 
 
 def _widened(key: str) -> tuple[Let, ...]:
-    """The ends that are tested: the limits and their tolerance."""
+    """The ends that are tested: the limits with their tolerance."""
     low, high, unlimited = _effective(key)
     tolerance = real(f"tolerance_{key}")
     return (
@@ -272,7 +272,7 @@ def _limit_outputs(key: str) -> list[Output]:
 
 
 def windows(mechanism: Mechanism) -> frozenset[str]:
-    """The constants that say where an axis may be: its widened limits, and the turn inside them."""
+    """The names of the constants that say where an axis may be: its widened limits, and the turn inside them."""
     found = [o for j in mechanism.joints for o in _window_outputs(j.key, has_turns=j.multi_turn)]
     found += [o for quantity in mechanism.limited for o in _window_outputs(quantity.name, has_turns=False)]
     return frozenset(o.name for o in found)
@@ -285,13 +285,13 @@ def _window_outputs(key: str, *, has_turns: bool) -> list[Output]:
 
 
 def _turn_window(joint: Joint) -> tuple[Let, ...]:
-    """Whether the axis has one value inside its limits at most, with a gap that no step crosses; and the middle of its range."""
+    """Whether at most one value of the axis is inside its limits, with a gap that no step crosses; the middle of its limits."""
     if not joint.multi_turn:
         return ()
     low, high, unlimited = _effective(joint.key)
     one_turn = sp.And(sp.Not(unlimited), sp.Le(high - low, ONE_TURN + real(f"tolerance_{joint.key}")))
     return (
-        Let(flag(f"single_{joint.key}"), one_turn, "one value inside the limits"),
+        Let(flag(f"single_{joint.key}"), one_turn, "at most one turn is inside the limits"),
         Let(real(f"mid_{joint.key}"), (low + high) / 2),
     )
 
@@ -300,8 +300,8 @@ def limits_of_axis() -> Program:
     """The limits of an axis of the machine and those of its drive together, for any axis.
 
     own_unlimited own_lower own_upper, drive_limited drive_lower drive_upper → lowest highest single middle: both ends with
-    their tolerance, whether one value is inside for every direction, and the middle. A drive that has not been heard of
-    has no limits: `drive_limited` is false, and its ends are not looked at.
+    their tolerance, whether at most one turn is inside, and the middle. A drive that has handed over nothing has no limits:
+    `drive_limited` is false, and its ends are not read.
     """
     axis = rotary("axis", "any axis")
     low, high, unlimited = _effective(axis.key)
@@ -314,9 +314,9 @@ def limits_of_axis() -> Program:
             Status.BAD_INPUT,
             reason=about_input(Why.DRIVE_LIMITS_CROSSED),
         ),
-        Let(own_low, Select(own_unlimited, -LARGEST, own_lower), "no axis value is larger in size"),
+        Let(own_low, Select(own_unlimited, -LARGEST, own_lower), "own limits; without any, the largest axis value"),
         Let(own_high, Select(own_unlimited, LARGEST, own_upper)),
-        Let(low, Select(sp.And(drive_limited, sp.Gt(drive_lower, own_low)), drive_lower, own_low), "the narrower of both"),
+        Let(low, Select(sp.And(drive_limited, sp.Gt(drive_lower, own_low)), drive_lower, own_low), "the narrower of both limits"),
         Let(high, Select(sp.And(drive_limited, sp.Lt(drive_upper, own_high)), drive_upper, own_high)),
         Require(sp.Le(low, high), Status.NOT_INITIALIZED, reason=about_input(Why.NO_AXIS_VALUE)),
         Let(unlimited, sp.And(sp.Not(drive_limited), own_unlimited)),
@@ -337,4 +337,4 @@ _OF_ANY_AXIS = {
     "tolerance": ("tolerance", _REAL), "lowest": ("lowest", _REAL), "highest": ("highest", _REAL), "single": ("single", _FLAG),
     "mid": ("middle", _REAL),
 }  # fmt: skip
-"""What the limits of one axis are called where it has no name."""
+"""The names of the limits of an axis, where no axis is named."""

@@ -1,4 +1,4 @@
-"""What a test on the controller consists of: machines, and calls with what they must answer."""
+"""The cases of a test on the controller: machines, and calls with their expected answers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Bytes = tuple[int, ...]
 
 
 class Called(Enum):
-    """What a case calls."""
+    """The method that a case calls."""
 
     INITIALIZE = 0
     FORWARD = 1
@@ -23,7 +23,7 @@ class Called(Enum):
 
 @dataclass(frozen=True)
 class Case:
-    """A call, and what it must answer. Of forward kinematics frame and configuration are answers, of the inverse the axes."""
+    """A call with its expected answer: frame and configuration of forward kinematics, the axes of the inverse."""
 
     called: Called
     machine: int

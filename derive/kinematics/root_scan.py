@@ -1,8 +1,8 @@
-"""Search: one joint tried around the circle, the others solved at each trial, until what is left of the closure vanishes.
+"""Root scan: one joint is tried around the circle, and the others are solved at each trial; a root leaves no residual.
 
-Three programs that share their inputs: `try_joint` says what a trial leaves, with its slope (see `FindRoot`); `finish_root`
-makes of a root the joints, improved by Newton's method on the closure, and tells whether they lie on the wanted branch;
-`find_root` finds the root that is nearest to the reference. How roots are found is in `roots`.
+Three programs with the same inputs. `try_joint` computes the residual of the closure at a trial, and its slope (see
+`FindRoot`). `finish_root` computes the joints at a root, improves them by Newton's method on the closure, and tells whether
+they lie on the wanted branch. `find_root` finds the root that is nearest to the reference; `ir/roots` says how.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import sympy as sp
 
 from derive.algebra.normal_form import cosine, sine
 from derive.description.mechanism import Mechanism
-from derive.equations.named_pose import walk
+from derive.equations.named_pose import named_pose
 from derive.ir.constants import BOUNDARY, DAMPED, IMPROVEMENTS, MET, NEARLY
 from derive.ir.passes import assemble
 from derive.ir.primitives import Atan2, Root, Select
@@ -36,30 +36,30 @@ from derive.kinematics.trial_slopes import slope_name, with_slopes
 START = real("start")
 LOOKED_FOR = flag("looked_for")
 GOAL = {real(c): real(f"goal_{c}") for c in COORDINATE_NAMES} | {r: real(f"goal_{r.name}") for r in ROTATION_ENTRIES}
-"""The commanded pose, by the names that these programs give it."""
+"""The names of the commanded pose in these programs."""
 FITS = "fits"
 FOUND = flag("found")
-"""Whether there is a root that fits."""
+"""Whether there is a root on the wanted branch."""
 _ZERO = sp.Integer(0)
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One trial: statements that solve the other joints at `TRIED`, and what they leave."""
+    """One trial: statements that solve the other joints with the scanned one at `TRIED`, and the residual that they leave."""
 
     statements: tuple[Let, ...]
     value: sp.Expr
-    """What must vanish, a number without a unit."""
+    """The residual, a number without a unit."""
     guard: sp.Expr
-    """Below zero where there is no solution."""
+    """Negative where the other joints have no solution."""
     angles: tuple[sp.Symbol, ...]
-    """What the partial steps determine."""
+    """The angles of steps with a measure: they may be free, and turn fast near by."""
 
 
 def try_program(trial: Trial) -> Program:
-    """What a trial says."""
+    """The program of a trial: residual and guard with their slopes, and the directions of angles that may turn fast."""
     value, guard = real("value"), real("guard")
-    left = Let(value, trial.value, "what is left of the closure")
+    left = Let(value, trial.value, "residual of the closure")
     differentiated = with_slopes([*_roots_named(trial.statements), left, Let(guard, trial.guard)], TRIED)
     bound = {s.name for s in differentiated if isinstance(s, Let)}
     slopes = [slope_name(n) if slope_name(n) in bound else _ZERO for n in (value, guard)]
@@ -67,43 +67,43 @@ def try_program(trial: Trial) -> Program:
     for number, angle in enumerate(trial.angles, 1):
         outputs += [Output(f"direction_{number}_cos", cosine(angle)), Output(f"direction_{number}_sin", sine(angle))]
     program = assemble("try_joint", differentiated, outputs)
-    return replace(program, summary="What a trial leaves of the closure, its slope, and what may turn fast with the joint")
+    return replace(program, summary="The residual of the closure at a trial, its slope, and the angles that may turn fast")
 
 
 def find_program(mechanism: Mechanism, trial: Program, finish: Program, arguments: Sequence[sp.Symbol]) -> Program:
-    """The root that fits and is nearest to the start."""
+    """The program that finds the root on the wanted branch that is nearest to the start."""
     names = (FOUND, *(real(o.name) for o in finish.outputs[1:]))
-    note = f"the search along {mechanism.search.joint.name if mechanism.search else ''}"
+    note = f"root scan along {mechanism.search.joint.name if mechanism.search else ''}"
     found = FindRoot(trial, finish, START, LOOKED_FOR, names, tuple(arguments), note)
     program = assemble("find_root", (found,), [Output(n.name, n) for n in names])
-    return replace(program, summary="The joints at the root that is nearest to the start; zeros where none is looked for")
+    return replace(program, summary="The joints at the root that is nearest to the start; zeros where the machine needs no scan")
 
 
 def finish_program(mechanism: Mechanism, trial: Trial, wanted: Sequence[sp.Expr], determinant: sp.Symbol) -> Program:
-    """The joints at a root, improved, and whether what is `wanted` of them is not negative."""
+    """The program that computes the joints at a root, and whether they fit: no value in `wanted` may be negative."""
     joints = [j.symbol for j in mechanism.joints]
     pairs = zip(joints, (real(f"{j.name}_tried") for j in joints), strict=True)
     solved = {j: Atan2(real(f"{sine(j).name}_tried"), real(f"{cosine(j).name}_tried")) for j, _ in pairs}
     error = real("error")
     conditions = [sp.Le(error, MET), *(sp.Ge(w, -NEARLY) for w in wanted)]
     loop, jacobian = _newton(mechanism, [solved[j] for j in joints])
-    last = Solve((), jacobian, (), determinant, "of the Jacobian there, positions in lengths of the machine")
+    last = Solve((), jacobian, (), determinant, "determinant of the Jacobian, positions in characteristic lengths")
     fits = Let(flag(FITS), sp.And(*conditions))
     outputs = [Output(FITS, fits.name), *(Output(f"found_{j.name}", j) for j in joints)]
     program = assemble("finish_root", (*trial.statements, loop, last, fits), outputs)
-    return replace(program, summary="The joints at a root, improved by Newton's method, and whether they are wanted")
+    return replace(program, summary="The joints at a root, improved by Newton's method, and whether they are on the branch")
 
 
 def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tuple[sp.Expr, ...]]:
-    """Newton's method on the closure: a step is taken where the next error, its square, will be smaller than this one.
+    """Newton's method on the closure: a step is taken where the next error, about its square, is smaller than this one.
 
-    The step is the shortest that lets the error vanish, J^T (J J^T + d^2)^-1 e: where the machine is singular, what only a
-    long step could mend is left. So a root is met that is known to a few digits there.
+    The step is that of damped least squares, J^T (J J^T + d^2)^-1 e. Where the machine is singular it leaves an error that only
+    a long step could remove: there a root is known to a few digits, and the long step would lead away from it.
     """
     joints = [j.symbol for j in mechanism.joints]
-    walked, (lets, entries) = walk(mechanism), jacobian_entries(mechanism)
+    composed, (lets, entries) = named_pose(mechanism), jacobian_entries(mechanism)
     places = len(mechanism.task.position)
-    pose = [Let(n, v) for n, v in zip(GOAL, (*walked.position, *walked.rotation), strict=True)]
+    pose = [Let(n, v) for n, v in zip(GOAL, (*composed.position, *composed.rotation), strict=True)]
     scaled = [v / (SCALE if k // len(joints) < places else 1) for k, v in enumerate(entries)]
     errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(), 1)]
     names = [let.name for let in errors]
@@ -117,10 +117,10 @@ def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tu
         step=tuple(
             s
             for s in (
-                *walked.statements,
+                *composed.statements,
                 *pose,
                 *errors,
-                Let(error, Root(sp.Add(*[n**2 for n in names])), "of the pose, in lengths of the machine and radians"),
+                Let(error, Root(sp.Add(*[n**2 for n in names])), "pose error, in characteristic lengths and radians"),
                 *lets,
                 *rates,
                 *_shortest_step(jacobian, names, steps),
@@ -139,37 +139,37 @@ def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tu
 
 
 def _named_entries(entries: Sequence[sp.Expr], width: int) -> tuple[list[Let], sp.Matrix]:
-    """The Jacobian by names of its entries, and what they are."""
+    """The statements that bind the entries of the Jacobian, and the Jacobian by their names."""
     names = [v if v.is_number else real(f"rate_{k // width + 1}_{k % width + 1}") for k, v in enumerate(entries)]
     lets = [Let(name, value) for name, value in zip(names, entries, strict=True) if not value.is_number]
     return lets, sp.Matrix(len(entries) // width, width, names)
 
 
 def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequence[sp.Symbol]) -> list[Let | Solve]:
-    """J^T (J J^T + d^2)^-1 e."""
+    """The step of damped least squares, J^T (J J^T + d^2)^-1 e."""
     size, product = len(errors), jacobian * jacobian.T
     upper = [(i, j) for i in range(size) for j in range(i, size)]
     names = {(i, j): real(f"product_{i + 1}_{j + 1}") for i, j in upper}
-    shares = tuple(real(f"share_{k + 1}") for k in range(size))
+    multipliers = tuple(real(f"multiplier_{k + 1}") for k in range(size))
     matrix = tuple(names[min(i, j), max(i, j)] for i in range(size) for j in range(size))
     return [
         *(Let(names[i, j], product[i, j] + (DAMPED if i == j else 0)) for i, j in upper),
-        Solve(shares, matrix, tuple(errors), None, "of the shortest step that lets the error vanish"),
-        *(Let(step, value) for step, value in zip(steps, jacobian.T * sp.Matrix(shares), strict=True)),
+        Solve(multipliers, matrix, tuple(errors), None, "damped least squares: the shortest step that cancels the error"),
+        *(Let(step, value) for step, value in zip(steps, jacobian.T * sp.Matrix(multipliers), strict=True)),
     ]
 
 
 def _errors() -> list[sp.Expr]:
-    """How far the goal is away: a shift in lengths of the machine, and half the skew part of the turn to it."""
+    """The error to the goal: a shift in characteristic lengths, and the vector of the rotation to it (its skew part)."""
     places = [(GOAL[real(c)] - real(c)) / SCALE for c in COORDINATE_NAMES]
     here = sp.Matrix(3, 3, ROTATION_ENTRIES)
     turn = sp.Matrix(3, 3, [GOAL[r] for r in ROTATION_ENTRIES]) * here.T
     return [*places, *((turn[i, j] - turn[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0)))]
 
 
-def _room(condition: sp.Basic) -> sp.Expr:
-    """How far a condition is from refusing, a number without a unit: 1 - c^2 of a cosine c that is at most 1 in size;
-    of a radicand how much more than its bound it is, over what its bound is `BOUNDARY` of.
+def _slack(condition: sp.Basic) -> sp.Expr:
+    """By how much a condition holds, without a unit: 1 - c^2 of a cosine c whose size is at most 1; of a radicand, by how much
+    it is above its bound, divided by the scale of which the bound is `BOUNDARY`.
     """
     if isinstance(condition, sp.Le):
         (cosine_value,) = condition.lhs.args
@@ -181,16 +181,16 @@ def _room(condition: sp.Basic) -> sp.Expr:
 def trial_of(
     statements: Sequence[Statement], value: sp.Expr, angles: Sequence[tuple[sp.Symbol, sp.Symbol]]
 ) -> Trial:
-    """A trial of solved statements; `angles` are those of partial steps, each with what is taken where it is free."""
+    """A trial from solved statements. angles: those of steps with a measure, each with its value where it is free."""
     guards = [s.condition for s in statements if isinstance(s, Require)]
-    guard = _room(guards[0]) if guards else sp.Integer(1)
+    guard = _slack(guards[0]) if guards else sp.Integer(1)
     found: list[Let] = []
     choices: dict[sp.Expr, sp.Expr] = {}
     conditions: dict[sp.Expr, sp.Basic] = {}
     for number, (angle, free) in enumerate(angles):
         chosen = real(f"chosen_{angle.name}")
         is_freed = sp.Eq(FREED, number)
-        found.append(Let(chosen, Select(is_freed, FREED_ANGLE, free), f"{angle.name}, where it is free"))
+        found.append(Let(chosen, Select(is_freed, FREED_ANGLE, free), f"{angle.name} where the pose leaves it free"))
         for function in (sp.cos, sp.sin):
             choices[function(free)] = function(chosen)
             conditions[function(free)] = sp.Ne(FREED, number)
@@ -207,7 +207,7 @@ def _freed(value: sp.Expr, choices: dict[sp.Expr, sp.Expr], conditions: dict[sp.
 
 
 def _roots_named(statements: Sequence[Let]) -> list[Let]:
-    """The statements with every root under a name, so that it is taken once and its slope as well."""
+    """The statements with every root under a name, so that root and slope are computed once."""
     found: list[Let] = []
     for s in statements:
         inner = sorted((r for r in s.value.atoms(Root) if r != s.value), key=sp.default_sort_key)
@@ -218,5 +218,5 @@ def _roots_named(statements: Sequence[Let]) -> list[Let]:
 
 
 def with_goal(statements: Sequence[Statement]) -> tuple[Statement, ...]:
-    """The statements reading the commanded pose by its names here."""
+    """The statements with the commanded pose by the names in `GOAL`."""
     return tuple(rewritten(s, lambda e: e.xreplace(dict(GOAL))) for s in statements)

@@ -19,7 +19,7 @@ Samples = dict[str, NDArray[np.float64]]
 
 
 def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False) -> Samples:
-    """Parameters near their nominal values, every name that a program may read, as scalars."""
+    """Parameters near their nominal values, and the characteristic length, as scalars."""
     generator = np.random.default_rng(seed)
     values: Samples = {}
     parameters = machine_parameters(mechanism)
@@ -34,7 +34,7 @@ def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False)
 
 
 def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int) -> Samples:
-    """Axis values all over the joints' ranges, as arrays; references equal the axes."""
+    """Axis values over the whole ranges of the joints, as arrays; the references are equal to the axes."""
     generator = np.random.default_rng(seed)
     values: Samples = {}
     for joint in mechanism.joints:

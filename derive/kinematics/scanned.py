@@ -1,9 +1,10 @@
-"""A mechanism with a search: closed form where a parameter is zero, one joint searched along where it is not.
+"""A mechanism with a root scan: closed form where a parameter is zero, a scan along one joint where it is not.
 
-Both derivations stand in one program, the names of the closed one ending in `_closed`, those of a trial in `_tried`; a
-condition of the one that is not meant never refuses. Branches are steps of the derivations as everywhere; what no step of the
-trial decides is asked of the root that was found. The crossing byte is the sign of the residual's slope, which is that of
-det J over the slopes of the trial's steps: the determinant is the one margin, and needs no formula.
+Both derivations stand in one program. Names of the closed form end in `_closed`, names of a trial in `_tried`. The conditions
+of the closed form refuse nothing where a scan is made. Branches are two-root steps of both derivations, as everywhere. A branch
+that no step of the trial decides is read off the root that was found. The last byte of the configuration says whether the
+residual rises or falls at the root. The sign of this slope is that of det J over the product of the slopes of the trial's
+steps. So det J is the only margin, and no formula is derived for it.
 """
 
 from __future__ import annotations
@@ -89,8 +90,8 @@ _SAMPLES = 64
 
 
 @dataclass(frozen=True)
-class Searching:
-    """Both derivations of a mechanism with a search, and which of their steps are which branches."""
+class Scanned:
+    """Both derivations of a mechanism with a root scan, and the branches of their steps."""
 
     mechanism: Mechanism
     forward: Forward
@@ -102,8 +103,8 @@ class Searching:
     """The branches that no step of a trial decides."""
 
 
-def solve_both(mechanism: Mechanism) -> Searching:
-    """Solve the closure without the parameter that needs a search, and with the searched joint known."""
+def solve_both(mechanism: Mechanism) -> Scanned:
+    """Solve the closure without the parameter that needs a scan, and with the scanned joint known."""
     assert mechanism.search is not None
     forward = pose_at_axes(mechanism)
     simple = without_search(mechanism)
@@ -115,11 +116,11 @@ def solve_both(mechanism: Mechanism) -> Searching:
     if len(guards) > 1 or not all(isinstance(g, sp.Ge) or isinstance(g.args[0], sp.Abs) for g in guards):
         raise DescriptionError(f"a trial along {mechanism.search.joint.name} may be out of reach in one step only")
     found, asked = steps_and_rest(mechanism, trial, forward)
-    return Searching(mechanism, forward, closed, assign(simple, closed, pose_at_axes(simple)), trial, found, asked)
+    return Scanned(mechanism, forward, closed, assign(simple, closed, pose_at_axes(simple)), trial, found, asked)
 
 
 def without_search(mechanism: Mechanism) -> Mechanism:
-    """The mechanism whose parameter is zero."""
+    """The mechanism with its parameter zero, which has a closed form."""
     assert mechanism.search is not None and mechanism.chain is not None
     gone = {mechanism.search.where.symbol: sp.Integer(0)}
     factors = (replace(f, amount=f.amount.xreplace(gone)) for f in mechanism.chain.factors)
@@ -129,13 +130,13 @@ def without_search(mechanism: Mechanism) -> Mechanism:
 
 
 def searched_flag(mechanism: Mechanism) -> Let:
-    """Whether the parameter is not zero."""
+    """The flag that the parameter is not zero."""
     assert mechanism.search is not None
     is_given = sp.Gt(sp.Abs(mechanism.search.where.symbol), 0)
-    return Let(SEARCHED, is_given, f"whether to search along {mechanism.search.joint.name}")
+    return Let(SEARCHED, is_given, f"whether to scan {mechanism.search.joint.name} for a root")
 
 
-def branch_statements(both: Searching) -> tuple[Statement, ...]:
+def branch_statements(both: Scanned) -> tuple[Statement, ...]:
     """The inverse of one branch, up to the axis values of every joint."""
     mechanism = both.mechanism
     assert mechanism.search is not None
@@ -154,13 +155,13 @@ def branch_statements(both: Searching) -> tuple[Statement, ...]:
             Status.UNREACHABLE,
             reason=about_machine(Why.NO_SECOND_CROSSING),
         ),
-        Call(program, arguments, names, f"{mechanism.search.joint.name}: where it meets what is left of the closure"),
+        Call(program, arguments, names, f"root scan along {mechanism.search.joint.name}"),
         Require(sp.Or(sp.Not(SEARCHED), FOUND), Status.UNREACHABLE, reason=no_root),
         *_chosen(both),
     )
 
 
-def _arguments(both: Searching, program: Program) -> tuple[tuple[sp.Symbol, sp.Expr], ...]:
+def _arguments(both: Scanned, program: Program) -> tuple[tuple[sp.Symbol, sp.Expr], ...]:
     """What the search of a branch is given."""
     mechanism = both.mechanism
     assert mechanism.search is not None
@@ -171,8 +172,8 @@ def _arguments(both: Searching, program: Program) -> tuple[tuple[sp.Symbol, sp.E
     return tuple((name, given[name]) for name in program.inputs if name in given)
 
 
-def search_given(both: Searching) -> Program:
-    """The arguments of the search, for all roots of a pose."""
+def search_given(both: Scanned) -> Program:
+    """The arguments of the scan for all roots of a pose."""
     arguments = _arguments(both, search_of(both))
     read = [*(real(c) for c in COORDINATE_NAMES), *ROTATION_ENTRIES, *(j.reference for j in both.mechanism.joints)]
     statements = (*finite(read), *both.closed.naming, searched_flag(both.mechanism))
@@ -180,14 +181,14 @@ def search_given(both: Searching) -> Program:
 
 
 def from_joints(mechanism: Mechanism) -> Program:
-    """Axis values of joints that are known."""
+    """The axis values of known joints."""
     known = {j.symbol for j in mechanism.joints}
     lets = [of_angle(let, j, known) for j in mechanism.joints for let in axis_lets(j)]
     return assemble("from_joints", lets, [Output(j.axis.name, j.axis) for j in mechanism.joints])
 
 
-def search_of(both: Searching) -> Program:
-    """The program that finds the root of a branch, with those that it shares."""
+def search_of(both: Scanned) -> Program:
+    """The program that finds the root of a branch, with the programs that it calls."""
     mechanism = both.mechanism
     trial = _trial(both)
     finish = finish_program(mechanism, trial, _margins_wanted(both), DETERMINANT)
@@ -201,12 +202,12 @@ def _sigma(branch: Branch) -> sp.Symbol:
 
 
 def _wanted(branch: Branch) -> sp.Symbol:
-    """The same as an argument of the search."""
+    """The same sign as an argument of the scan."""
     return count(f"wanted_{branch.name}")
 
 
-def _margins_wanted(both: Searching) -> list[sp.Expr]:
-    """The scaled margins of all branches at the joints, positive on the wanted one."""
+def _margins_wanted(both: Scanned) -> list[sp.Expr]:
+    """The scaled margins of all branches at the joints, each positive on the wanted branch."""
     mechanism = both.mechanism
     functions = {f(j.symbol): g(j.symbol) for j in mechanism.joints for f, g in ((cosine, sp.cos), (sine, sp.sin))}
     found = []
@@ -228,16 +229,16 @@ def _is_length(mechanism: Mechanism, branch: Branch) -> bool:
     return bool(sp.sympify(branch.indicator).subs(gone) == 0)
 
 
-def _chosen(both: Searching) -> Iterable[Let]:
-    """The angle of every joint, found or in closed form."""
+def _chosen(both: Scanned) -> Iterable[Let]:
+    """The angle of every joint, from the scan or in closed form."""
     for joint in both.mechanism.joints:
         name = joint.symbol.name
         closed = Atan2(real(f"{sine(joint.symbol).name}_closed"), real(f"{cosine(joint.symbol).name}_closed"))
         yield Let(joint.symbol, Select(SEARCHED, real(f"found_{name}"), closed))
 
 
-def _trial(both: Searching) -> Trial:
-    """One trial, on the side of the wanted branch that is asked for."""
+def _trial(both: Scanned) -> Trial:
+    """One trial on the wanted branch; SIDE = -1 takes the other solution of its two-root step."""
     mechanism = both.mechanism
     assert mechanism.search is not None
     joint = mechanism.search.joint.symbol
@@ -254,8 +255,8 @@ def _trial(both: Searching) -> Trial:
     return replace(trial, angles=tuple(real(f"{a.name}_tried") for a in angles))
 
 
-def _indicators(both: Searching) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
-    """What the branches that no step decides are asked by, and the sines and cosines in it."""
+def _indicators(both: Scanned) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
+    """The statements for, and the indicators of, the branches that no step decides."""
     lets, indicators = named_trigonometry(
         both.mechanism, [with_fixed_names(both.mechanism, b.indicator * b.signs[0]) for b in both.asked]
     )
@@ -263,19 +264,19 @@ def _indicators(both: Searching) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
 
 
 def _named_apart(statements: Iterable[Statement], word: str, own: Container[sp.Symbol] = ()) -> tuple[Statement, ...]:
-    """The statements with the word behind every name that they bind, but for own names."""
+    """The statements with the word appended to every name that they bind, except `own` names."""
     kept = list(statements)
     table = {n: n if n in own else called(f"{n.name}_{word}", n) for s in kept for n in binds(s)}
     return tuple(renamed(rewritten(s, lambda e: e.xreplace(table)), lambda n: table[n]) for s in kept)
 
 
 def _only(statements: Iterable[Statement], otherwise: sp.Basic) -> tuple[Statement, ...]:
-    """The statements with conditions that refuse only where `otherwise` does not hold."""
+    """The statements with conditions that refuse only where `otherwise` is false."""
     return tuple(replace(s, condition=sp.Or(otherwise, s.condition)) if isinstance(s, Require) else s for s in statements)
 
 
-def margin_statements(both: Searching) -> tuple[tuple[Statement, ...], tuple[Let, ...]]:
-    """At axis values: the statements and `branch_<name>` of every branch."""
+def margin_statements(both: Scanned) -> tuple[tuple[Statement, ...], tuple[Let, ...]]:
+    """The statements at given axis values, and `branch_<name>` of every branch."""
     mechanism = both.mechanism
     statements: list[Statement] = [searched_flag(mechanism), *both.forward.statements]
     own = {name for s in both.forward.statements for name in binds(s)}
@@ -300,7 +301,7 @@ def margin_statements(both: Searching) -> tuple[tuple[Statement, ...], tuple[Let
     return tuple(statements), (*found, _crossing_margin(both, scaled, margins))
 
 
-def _crossing_margin(both: Searching, determinant: sp.Expr, margins: dict[str, dict[str, sp.Expr]]) -> Let:
+def _crossing_margin(both: Scanned, determinant: sp.Expr, margins: dict[str, dict[str, sp.Expr]]) -> Let:
     crossing = next(b for b in both.mechanism.branches if b.is_crossing)
     slope = _orientation(both) * determinant
     for a in both.trial_branches:
@@ -308,25 +309,25 @@ def _crossing_margin(both: Searching, determinant: sp.Expr, margins: dict[str, d
     return Let(real(f"branch_{crossing.name}"), Select(SEARCHED, slope, sp.Integer(1)))
 
 
-def determinant_margin(both: Searching) -> tuple[tuple[Statement, ...], sp.Expr]:
+def determinant_margin(both: Scanned) -> tuple[tuple[Statement, ...], sp.Expr]:
     """The determinant of the Jacobian at a pose that forward kinematics has found, over the scales of the closed steps."""
     mechanism = both.mechanism
     lets, entries = jacobian_entries(mechanism)
     width = len(mechanism.joints)
     scaled = [v / (SCALE if k // width < len(mechanism.task.position) else 1) for k, v in enumerate(entries)]
-    system = Solve((), tuple(scaled), (), DETERMINANT, "of the Jacobian, its positions in lengths of the machine")
+    system = Solve((), tuple(scaled), (), DETERMINANT, "determinant of the Jacobian, positions in characteristic lengths")
     return (*lets, system), DETERMINANT * _determinant_scale(both)
 
 
-def _determinant_scale(both: Searching) -> sp.Expr:
+def _determinant_scale(both: Scanned) -> sp.Expr:
     scale = sp.Mul(*[a.slope.scale for a in both.closed_branches])
     lengths = {s.name: s.value for s in both.closed.derivation.statements if isinstance(s, Let)}
     scale = scale.xreplace({name: lengths[name] for name in scale.free_symbols & lengths.keys()})
     return SCALE ** len(both.mechanism.task.position) / scale
 
 
-def _orientation(both: Searching) -> int:
-    """+1 where the slope of the residual has the sign of det J over the slopes of the steps, else -1: the same at all poses."""
+def _orientation(both: Scanned) -> int:
+    """+1 where the slope of the residual has the sign of det J over the slopes of the steps, else -1. All poses must agree."""
     mechanism = both.mechanism
     assert mechanism.search is not None
     machine = sample_machine(mechanism, 51)
@@ -337,14 +338,14 @@ def _orientation(both: Searching) -> int:
     lets = [Let(real(f"margin_{n}"), v) for n, v in trial.items()]
     statements = (*derivation_at_axes(mechanism, both.trial, both.forward), *determinant, *lets)
     outputs = [Output("slope", scaled * sp.Mul(*[let.name for let in lets]))]
-    values, _ = run(assemble("orientation_of_the_search", statements, outputs), {**machine, **axes})
+    values, _ = run(assemble("orientation_of_the_scan", statements, outputs), {**machine, **axes})
     signs = np.unique(np.sign(values["slope"] * slope))
     if len(signs) != 1:
         raise DescriptionError("the slope of the residual is not the determinant over the slopes of the steps")
     return int(signs[0])
 
 
-def _measured_slope(both: Searching, samples: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+def _measured_slope(both: Scanned, samples: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
     """The slope of the residual at sampled axes, by a central difference along the searched joint."""
     mechanism = both.mechanism
     assert mechanism.search is not None

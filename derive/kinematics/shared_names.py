@@ -1,4 +1,4 @@
-"""Names that a parameter and a value would share: in a program a name is a name, and the two would become one."""
+"""Refuse a parameter and a value of a derivation with the same name: a program could not tell the two apart."""
 
 from __future__ import annotations
 
@@ -18,5 +18,5 @@ def refuse_shared_names(mechanism: Mechanism, statements: Iterable[Statement]) -
 
 
 def _key(name: str) -> str:
-    """Structured Text joins the words of a name."""
+    """The name as Structured Text compares it, where words are joined."""
     return name.replace("_", "")

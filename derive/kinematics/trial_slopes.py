@@ -1,4 +1,4 @@
-"""Slopes: every value of a straight line of statements also differentiated by one of its inputs.
+"""Slopes, by automatic differentiation: every value of a straight-line program also differentiated by one of its inputs.
 
     Let(a, t*x)              →  Let(slope_a, x)
     Let(b, Root(a))          →  Let(slope_b, Select(b > 0, slope_a/(2*b), 0))
@@ -23,12 +23,12 @@ _ZERO = sp.Integer(0)
 
 
 def slope_name(name: sp.Symbol) -> sp.Symbol:
-    """What the slope of a value is called."""
+    """The name of the slope of a value."""
     return real(f"slope_{name.name}")
 
 
 def with_slopes(statements: Sequence[Statement], variable: sp.Symbol) -> tuple[Statement, ...]:
-    """The statements, and behind each value that the variable moves its slope."""
+    """The statements, each followed by its slope where that is not zero."""
     slopes: dict[sp.Symbol, sp.Expr] = {variable: sp.Integer(1)}
     found: list[Statement] = []
     for s in statements:
@@ -44,7 +44,7 @@ def with_slopes(statements: Sequence[Statement], variable: sp.Symbol) -> tuple[S
 
 
 def _slope(value: sp.Basic, slopes: dict[sp.Symbol, sp.Expr], whole: sp.Expr | None = None) -> sp.Expr:
-    """The slope of an expression, through those of its names; `whole` is the name that it has, if any."""
+    """The slope of an expression, from the slopes of its names. whole: the name of the expression itself, if any."""
     if not value.free_symbols & slopes.keys():
         return _ZERO
     if isinstance(value, Select):

@@ -1,7 +1,7 @@
-"""The cones of a rod's joints: how far a rod may lean from its direction at the home pose.
+"""The cones of a rod's joints: the largest angle between a rod and its direction at the home pose.
 
-The joint on the base sees the rod's direction u, the joint on the plate R^T u. Each leans by the angle between that and the
-same at the home pose, u0 and R0^T u0, which are the axes of the two cones.
+Let u be the unit vector along the rod in the frame of the base, and R^T u the same in the frame of the plate. At the home pose
+these are u0 and R0^T u0, the axes of the two cones. A joint leans by the angle between the rod and the axis of its cone.
 """
 
 from __future__ import annotations
@@ -37,19 +37,19 @@ from derive.ir.symbols import (
 from derive.plate.legs import names, of, turned
 
 _HOME, _SEEN, _TURNED = "home_along", "plate_axis", "cone_axis"
-"""The rod's direction at home, the same as the plate sees it, and where the plate has taken that."""
+"""The rod's direction at home; the same in the frame of the plate; the same as the plate has turned it."""
 _BEYOND = {"base": Why.BEYOND_BASE_CONE, "plate": Why.BEYOND_PLATE_CONE}
 
 
 def cone_axes(mechanism: Mechanism, home_rotation: Sequence[sp.Expr]) -> tuple[Let, ...]:
-    """The axes of the cones on the plate, in its frame. Those on the base are the directions at the home pose."""
+    """The axes of the cones on the plate, in its frame. Those on the base are the rods' directions at the home pose."""
     back = sp.Matrix(3, 3, list(home_rotation)).T
     rods = (rod for rod in mechanism.rods if rod.plate_cone is not None)
     return tuple(let for rod in rods for let in turned(back, names("along", rod), names(_SEEN, rod)))
 
 
 def cone_constants(mechanism: Mechanism) -> Iterator[Output]:
-    """The axes of all cones, as the other programs know them."""
+    """The axes of all cones as outputs, for other programs."""
     for rod in mechanism.rods:
         for cone, axis, source in ((rod.base_cone, _HOME, "along"), (rod.plate_cone, _SEEN, _SEEN)):
             if cone is not None:
@@ -57,7 +57,7 @@ def cone_constants(mechanism: Mechanism) -> Iterator[Output]:
 
 
 def cone_checks(mechanism: Mechanism) -> tuple[Statement, ...]:
-    """What the directions of the rods must satisfy at a solved pose."""
+    """The conditions on the directions of the rods at a solved pose."""
     on_base = [(rod, rod.base_cone) for rod in mechanism.rods if rod.base_cone is not None]
     on_plate = [(rod, rod.plate_cone) for rod in mechanism.rods if rod.plate_cone is not None]
     taken = (let for rod, _ in on_plate for let in turned(ROTATION_ENTRIES, names(_SEEN, rod), names(_TURNED, rod)))
@@ -65,7 +65,7 @@ def cone_checks(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 
 def _inside(side: str, cones: Sequence[tuple[Rod, sp.Expr]], axis: str) -> Iterator[Statement]:
-    """Every rod inside its cone, whose boundary belongs to it; one of 180 degrees bounds nothing."""
+    """Every rod inside its cone. The boundary belongs to the cone; a cone of 180 degrees sets no bound."""
     widths = list(dict.fromkeys(cone for _, cone in cones))
     least = {cone: real(f"least_cos_{side}" + (f"_{k}" if len(widths) > 1 else "")) for k, cone in enumerate(widths, 1)}
     for cone, name in least.items():

@@ -1,8 +1,8 @@
-"""The legs of a platform at a pose: names, vectors, and the rows of A in A (v, w) = -e.
+"""The legs of a platform at a pose: names, vectors, and the rows of the matrix A in A (v, w) = -e.
 
-Rod i holds the plate by e = |span| - length. With a the arm from the frame of the plate to the rod's joint and u the unit
-vector along the rod, e' = [u, a x u] (v, w): these rows are A. Moments are divided by the platform's radius, so that
-det A is a number without a unit.
+The length error of rod i is e = |span| - length. Let a be the arm from the origin of the plate to the rod's joint, and u the
+unit vector along the rod. Then e' = [u, a x u] (v, w): a row of A is the rod as a line, in Pluecker coordinates. Moments are
+divided by the platform's radius, so that det A has no unit.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ Vector = tuple[sp.Expr, ...]
 
 
 def names(word: str, rod: Rod) -> tuple[sp.Symbol, ...]:
-    """The names of a vector that belongs to a rod: `span_1_x` and so on."""
+    """The names of the components of a rod's vector: `span_1_x` and so on."""
     return tuple(real(f"{word}_{rod.name}_{c}") for c in COORDINATE_NAMES)
 
 
 def of(word: str, rod: Rod) -> sp.Symbol:
-    """The name of a number that belongs to a rod: `length_1`."""
+    """The name of a rod's number: `length_1`."""
     return real(f"{word}_{rod.name}")
 
 
@@ -61,13 +61,13 @@ def point_of(rod: Rod) -> Vector:
 
 
 def turned(rotation: Sequence[sp.Expr], point: Sequence[sp.Expr], called: Sequence[sp.Symbol]) -> tuple[Let, ...]:
-    """A point turned by a rotation given by rows."""
+    """The product of a rotation, given by rows, and a point, bound to the names `called`."""
     matrix = sp.Matrix(3, 3, list(rotation))
     return tuple(Let(n, v) for n, v in zip(called, matrix * sp.Matrix(list(point)), strict=True))
 
 
 def by_angles(words: Sequence[str] = ANGLES) -> sp.Matrix:
-    """Rz(yaw) Ry(pitch) Rx(roll), by the names of the cosines and sines."""
+    """Rz(yaw) Ry(pitch) Rx(roll), in the names of the cosines and sines."""
     (cr, cp, cy), (sr, sp_, sy) = (tuple(real(f"{f}_{w}") for w in words) for f in ("cos", "sin"))
     return sp.Matrix(
         [
@@ -79,9 +79,9 @@ def by_angles(words: Sequence[str] = ANGLES) -> sp.Matrix:
 
 
 def span(rod: Rod, position: Sequence[sp.Expr], arm: Sequence[sp.Expr], base: Sequence[sp.Expr]) -> tuple[Let, ...]:
-    """From the joint on the base to the joint on the plate."""
+    """The vector from the joint on the base to the joint on the plate."""
     lets = (Let(n, p + a - b) for n, p, a, b in zip(names("span", rod), position, arm, base, strict=True))
-    return noted(lets, f"leg {rod.name}: from its joint on the base to its joint on the platform")
+    return with_note(lets, f"leg {rod.name}: vector from its joint on the base to its joint on the platform")
 
 
 def length(rod: Rod) -> Let:
@@ -90,7 +90,7 @@ def length(rod: Rod) -> Let:
 
 
 def row(rod: Rod, arm: Sequence[sp.Expr], measured: sp.Expr) -> tuple[Let, ...]:
-    """A row of A: the direction of a span of known length, and its moment about the frame of the plate."""
+    """A row of A: the unit vector along a span of known length, and its moment about the origin of the plate."""
     along, divisor = names("along", rod), of("divisor", rod)
     moment = sp.Matrix(list(arm)).cross(sp.Matrix(along)) / RADIUS
     lets = (
@@ -98,15 +98,15 @@ def row(rod: Rod, arm: Sequence[sp.Expr], measured: sp.Expr) -> tuple[Let, ...]:
         *(Let(a, s / divisor) for a, s in zip(along, names("span", rod), strict=True)),
         *(Let(n, v) for n, v in zip(names("moment", rod), moment, strict=True)),
     )
-    return noted(lets, f"leg {rod.name}: its direction, and the moment of that about the platform's origin")
+    return with_note(lets, f"leg {rod.name} as a line: unit vector, and its moment about the platform's origin")
 
 
-def noted(lets: Iterable[Let], note: str) -> tuple[Let, ...]:
-    """The statements, with a note at the first of them."""
+def with_note(lets: Iterable[Let], note: str) -> tuple[Let, ...]:
+    """The statements, the first of them with a note."""
     first, *others = lets
     return (replace(first, note=note), *others)
 
 
 def rows(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
-    """A, by rows."""
+    """The names of the entries of A, by rows."""
     return tuple(entry for rod in mechanism.rods for word in ("along", "moment") for entry in names(word, rod))

@@ -1,6 +1,6 @@
-"""A platform on rods that moves with its whole pose: its home pose, what the inverse refuses, and its singularity.
+"""A platform on six rods that moves with its whole pose: its home pose, the checks of its inverse, and its singularity.
 
-det A (see `legs`) is the margin: it is zero where the rods lie in one linear complex (type 2).
+det A (see `legs`) is the margin: it is zero where the lines of the rods belong to one linear complex (type 2).
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ _HELD = "a home pose at which the legs hold the platform"
 
 
 def machine_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
-    """What depends on the machine alone: home rotation and arms, scales, and the assembly mode at the home pose."""
+    """The statements that depend on parameters alone: home rotation and arms, scales, assembly mode at the home pose."""
     if len(mechanism.rods) != 6 or len(mechanism.home) != 6:
         raise DescriptionError("a platform that moves freely needs six rods and a home pose of six coordinates")
     turns = tuple(zip(ANGLES, mechanism.home[3:], strict=True))
@@ -89,7 +89,7 @@ def _platform_radius(mechanism: Mechanism) -> tuple[Let, ...]:
     spread = real("spread")
     return (
         *(Let(n, v, "centre of the joints on the platform") for n, v in zip(centre, means, strict=True)),
-        Let(spread, Root(sp.Add(*squares) / len(points)), "their mean distance from it"),
+        Let(spread, Root(sp.Add(*squares) / len(points)), "root mean square of their distances from it"),
         Let(RADIUS, Select(sp.Gt(spread, 0), spread, sp.Integer(1))),
     )
 
@@ -104,24 +104,24 @@ def _at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
     return (
         *(let for lets in spans for let in lets),
         *(length(rod) for rod in rods),
-        Let(SCALE, sp.Add(*lengths) / len(lengths) + RADIUS, "a length of the machine: the mean leg and the platform"),
+        Let(SCALE, sp.Add(*lengths) / len(lengths) + RADIUS, "characteristic length: mean leg, radius of the platform"),
         Require(apart, Status.NOT_INITIALIZED, reason=about_parameters(_APART)),
         *(let for rod, arm in zip(rods, arms, strict=True) for let in row(rod, arm, of("length", rod))),
         *cone_axes(mechanism, HOME_ROTATION),
-        Solve((), rows(mechanism), (), DETERMINANT, "the legs at the home pose: zero where they do not hold the platform"),
+        Solve((), rows(mechanism), (), DETERMINANT, "determinant at the home pose: zero where the legs do not hold the platform"),
         Require(sp.Gt(sp.Abs(DETERMINANT), SINGULAR), Status.NOT_INITIALIZED, reason=about_parameters(_HELD)),
         Let(ASSEMBLY_SIGN, Select(sp.Gt(DETERMINANT, 0), sp.Integer(1), sp.Integer(-1)), "assembly mode of this machine"),
     )
 
 
 def machine_constants(mechanism: Mechanism) -> tuple[Output, ...]:
-    """Those of these names that other programs may read."""
+    """The outputs that other programs may read."""
     own = (Output(n.name, n) for n in (*HOME_ROTATION, RADIUS, SCALE, ASSEMBLY_SIGN))
     return (*own, *cone_constants(mechanism))
 
 
 def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[Statement, ...]:
-    """What a solved inverse must satisfy: legs with a length, in the machine's assembly mode, and far from losing the plate."""
+    """The checks of a solved inverse: legs with a length, the assembly mode of the machine, a distance from the singularity."""
     bound = {s.name for s in solved if isinstance(s, Let)}
     lets: list[Let] = []
     for rod in mechanism.rods:
@@ -133,7 +133,7 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
         *lets,
         *(_long_enough(rod) for rod in mechanism.rods),
         *cone_checks(mechanism),
-        Solve((), rows(mechanism), (), DETERMINANT, "margin of the platform"),
+        Solve((), rows(mechanism), (), DETERMINANT, "determinant of the legs as lines: zero in a type 2 singularity"),
         Require(sp.Ge(margin, least), Status.UNREACHABLE, reason=about(MARGIN, Why.NEAR_TYPE_2, least - margin)),
     )
 
@@ -143,19 +143,19 @@ def _long_enough(rod: Rod) -> Require:
 
 
 def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
-    """A^-1 (-B) at a pose that forward kinematics has found: how joints move the plate."""
+    """The Jacobian A^-1 (-B) at a pose that forward kinematics has found."""
     joints = [j.symbol for j in mechanism.joints]
     driven = sp.Matrix([_driven(rod).jacobian(joints) for rod in mechanism.rods]) * motors
     width = len(joints)
     words = (*(f"v{c}" for c in COORDINATE_NAMES), *(f"w{c}" for c in COORDINATE_NAMES))
     entries = [real(f"column_{column}_{word}") for word in words for column in range(1, width + 1)]
     held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED))
-    system = Solve(tuple(entries), rows(mechanism), tuple(driven), None, "how the legs move the platform")
+    system = Solve(tuple(entries), rows(mechanism), tuple(driven), None, "twist of the platform per velocity of each leg")
     return (held, system), [e if k // width < 3 else e / RADIUS for k, e in enumerate(entries)]
 
 
 def _driven(rod: Rod) -> sp.Matrix:
-    """Minus the residual of a rod as far as joints move it, its direction held: along . base + length."""
+    """The negative of a rod's residual as a function of the joints, at a constant direction: along . base + length."""
     return sp.Matrix([sum((a * b for a, b in zip(names("along", rod), rod.base, strict=True)), rod.length)])
 
 

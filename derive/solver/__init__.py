@@ -1,1 +1,1 @@
-"""How it is solved: the driver, its record, eliminations, sums of parallel axes, feasible arcs, and the subproblems."""
+"""How the closure is solved: driver, derivation record, eliminations, parallel axes, feasible arcs, and the subproblems."""

@@ -1,4 +1,4 @@
-"""The ledger of a derivation: statements in order, equal values under one name, every name once."""
+"""The record of a derivation: statements in order, equal values under one name, every name bound once."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from derive.ir.verify import BrokenProgram
 
 
 class Ledger:
-    """Collects the bindings of a derivation."""
+    """The bindings of a derivation, in order."""
 
     def __init__(self) -> None:
         self._statements: list[Statement] = []
@@ -48,11 +48,11 @@ class Ledger:
 
     @property
     def residuals(self) -> tuple[sp.Expr, ...]:
-        """What vanishes if the equations agree with each other."""
+        """The expressions that vanish if the equations agree with each other."""
         return tuple(self._residuals)
 
     def commit(self, binding: Binding) -> Binding:
-        """Write a binding down; the answer is the same binding with the names that stand in the ledger."""
+        """Record a binding. Returns it with the names under which its values are recorded."""
         names = self._write(binding.statements, keep={f(u) for u in binding.unknowns for f in (sine, cosine)})
         binding = replace(
             binding,
@@ -71,11 +71,11 @@ class Ledger:
         return binding
 
     def append(self, statements: Sequence[Statement]) -> None:
-        """Write further statements down under their own names."""
+        """Record further statements under their own names."""
         self._write(statements, keep={s.name for s in statements if isinstance(s, Let)})
 
     def definitions(self, units: Sequence[sp.Symbol]) -> Mapping[sp.Symbol, sp.Expr]:
-        """What names stand for, as far as they are polynomials; sines and cosines of the units stand for themselves."""
+        """The polynomials that names stand for, but for the sines and cosines of the units."""
         own = {f(a) for a in units for f in (sine, cosine)}
         lets = [s for s in self._statements if isinstance(s, Let)]
         return {s.name: s.value for s in lets if s.name not in own and s.value.is_polynomial()}

@@ -1,9 +1,9 @@
-"""General consequences of equations, in tiers: each is tried only when the previous gives no subproblem.
+"""Eliminations, in tiers: each is tried only when the previous one gives no subproblem.
 
-* difference: an unknown length that two equations hold affinely is eliminated between them;
-* elimination: an unknown length that one equation holds affinely with a number before it is put into the others;
-* squares: the sum of the squares of two equations, known parts on the other side, loses the angle that
-  turns both (the law of cosines); that of three, as a last resort, every angle that turns all of them.
+* difference: an unknown length that is linear in two equations is eliminated between them;
+* elimination: an unknown length that is linear in one equation, with a number as its coefficient, is put into the others;
+* squares: the sum of the squares of two equations, known parts on the right side, is free of the angle that
+  turns both (this is the law of cosines). As a last resort three are squared: free of every angle that turns all of them.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def differences(problem: Problem) -> tuple[Equation, ...]:
 
 
 def eliminations(problem: Problem) -> tuple[Equation, ...]:
-    """Equations in which one unknown length has been written through another equation."""
+    """Equations into which an unknown length has been put from another equation."""
     found: list[Equation] = []
     for source in problem.equations:
         for unknown in problem.lengths:
@@ -54,7 +54,7 @@ def eliminations(problem: Problem) -> tuple[Equation, ...]:
 
 
 def squares(problem: Problem, count: int = 2) -> tuple[Equation, ...]:
-    """Sums of squares of some equations; the known side is named as a length."""
+    """Sums of squares of `count` equations; the known side is named as the length `reach`."""
     found = [_sum_of_squares(problem, some) for some in combinations(problem.equations, count)]
     return tuple(equation for equation in found if equation is not None)
 
@@ -74,13 +74,13 @@ def _sum_of_squares(problem: Problem, equations: tuple[Equation, ...]) -> Equati
         return None
     naming = Naming(problem, tuple(let for e in equations for let in e.lets))
     spanned = [
-        naming.named(-known, f"wrist_{e.label}", "what the unknown links must span")
+        naming.named(-known, f"wrist_{e.label}", "coordinate of the point that the remaining links must reach")
         for e, (_, known) in zip(equations, sides, strict=True)
     ]
-    reach = naming.length("reach", *spanned)
+    reach = naming.length("reach", *spanned, note="distance that the remaining links must span")
     return Equation(" + ".join(f"{e.label}²" for e in equations), moving - reach**2, naming.lets)
 
 
 def _has_plain_unknown(problem: Problem, expression: sp.Expr) -> bool:
-    """Whether an angle or a length occurs outside sines and cosines: its square would only be longer."""
+    """Whether an angle or a length occurs outside sines and cosines: its square would be no simpler."""
     return bool(expression.free_symbols & {*problem.lengths, *problem.angles})

@@ -1,10 +1,10 @@
-"""Free angles stay where the rest can be solved: a partial step's angle is moved onto the arc that later steps can reach.
+"""Feasible arc: a free angle is moved onto the arc on which the later steps have solutions.
 
-Where a partial step's measure vanishes its angle u is free, and where the measure is tiny u is known only to a few digits.
-A later two-root step needs |e| <= h; there e = level + along cos u + across sin u (what else e holds of u, its second harmonic,
-vanishes with the measure, and is taken as constant). So cos(u - centre) lies between two bounds: on each side of the centre an
-arc. u moves to the nearest point of the arc on its side, where the motion that this costs, measure times arc, is rounding.
-Where e is within its bound, or far beyond it though u is known, u stays, and nothing of this is looked at.
+Where the measure of a step vanishes its angle u is free, and where the measure is tiny u is known only to a few digits.
+A later two-root step needs |e| <= h with e = level + along cos u + across sin u. (The second harmonic of e in u vanishes with
+the measure, and is taken as constant.) So cos(u - centre) lies between two bounds, and u on one of two arcs, one on each side
+of the centre. u moves to the nearest point of the arc on its side, if the change of the pose, measure times the angle moved, is
+no more than rounding. Where e is within its bound, or far beyond it although u is well known, u stays.
 """
 
 from __future__ import annotations
@@ -41,10 +41,12 @@ from derive.ir.symbols import (
     real,
 )
 
+WITHIN_ITS_BOUND = "{} has solutions where this is within its bound"
+
 
 @dataclass(frozen=True)
 class _Part:
-    """A name that the angle moves: fixed + along cos u + across sin u."""
+    """A value that depends on the angle: fixed + along cos u + across sin u."""
 
     name: sp.Symbol
     fixed: sp.Expr
@@ -54,20 +56,25 @@ class _Part:
 
 @dataclass(frozen=True)
 class _Condition:
-    """|e| <= h of a later step: e is made of the parts that the angle moves, at most squared."""
+    """|e| <= h of a later step: e is a polynomial of at most the second degree in values that depend on the angle."""
 
+    step: sp.Symbol
+    """The unknown of the later step."""
     word: str
+    """What the names of this motion end in."""
     size: sp.Expr
+    """h"""
     value: sp.Expr
+    """e"""
     parts: tuple[_Part, ...]
     chain: tuple[Let, ...]
-    """How the parts follow from the angle, step by step."""
+    """The statements by which these values follow from the angle, in order."""
 
 
 def within_reach(
     statements: Sequence[Statement], slopes: Sequence[Slope], measures: Sequence[Measure]
 ) -> tuple[Statement, ...]:
-    """The derivation with every angle that can be free kept where later steps have solutions."""
+    """The derivation with every angle that can be free moved to where the later steps have solutions."""
     found = list(statements)
     for measure in measures:
         for slope in slopes:
@@ -78,7 +85,7 @@ def within_reach(
 
 
 def _in_order(statements: Sequence[Statement]) -> list[Statement]:
-    """Every statement behind those that it reads: a motion reads what was bound after the angle, but does not depend on it."""
+    """Every statement behind those that it reads: a motion reads values bound behind the angle that do not depend on it."""
     sources = {name: s for s in statements for name in binds(s)}
     ordered: list[Statement] = []
     begun: set[int] = set()
@@ -96,7 +103,7 @@ def _in_order(statements: Sequence[Statement]) -> list[Statement]:
 
 
 def _condition(statements: Sequence[Statement], measure: Measure, slope: Slope) -> _Condition | None:
-    """The condition of a later step on the angle of a partial step; None where it has none."""
+    """The condition of a later step on the angle of a step with a measure; None where it has none."""
     angle = measure.angle
     if slope.reach is None:
         return None
@@ -107,12 +114,12 @@ def _condition(statements: Sequence[Statement], measure: Measure, slope: Slope) 
         return None
     parts = tuple(p for name in moved for p in [_part(name, dependent[name], angle)] if p is not None)
     if len(parts) < len(moved):
-        return None  # the later step depends on the angle in a way that no arc can tell
+        return None  # the later step does not depend on the angle by its first harmonic alone
     gone = _vanishing(statements, measure)
     if all(p.along.xreplace(gone) == 0 and p.across.xreplace(gone) == 0 for p in parts):
-        return None  # where the angle is free it no longer moves them
+        return None  # where the angle is free these values do not depend on it
     chain = tuple(_chain(statements, moved, dependent))
-    return _Condition(f"{angle.name}_of_{slope.step.name}", size, value, parts, chain)
+    return _Condition(slope.step, f"{angle.name}_of_{slope.step.name}", size, value, parts, chain)
 
 
 def _chain(statements: Sequence[Statement], names: Sequence[sp.Symbol], dependent: Mapping[sp.Symbol, sp.Expr]) -> list[Let]:
@@ -126,7 +133,7 @@ def _chain(statements: Sequence[Statement], names: Sequence[sp.Symbol], dependen
 
 
 def _vanishing(statements: Sequence[Statement], measure: Measure) -> dict[sp.Symbol, sp.Expr]:
-    """What is zero where the measure, a length, is zero: what it is the length of."""
+    """The components of the vector whose length the measure is: they are zero where it is."""
     values = [s.value for s in statements if isinstance(s, Let) and s.name == measure.value]
     terms = [t for value in values if isinstance(value, Root) for t in sp.Add.make_args(value.args[0])]
     return {t.base: sp.Integer(0) for t in terms if isinstance(t, sp.Pow) and t.exp == 2}
@@ -157,7 +164,7 @@ def _part(name: sp.Symbol, value: sp.Expr, angle: sp.Symbol) -> _Part | None:
 
 
 def _moved(statements: Sequence[Statement], measure: Measure, condition: _Condition) -> list[Statement]:
-    """The statements with the angle moved onto the arc, where it was bound."""
+    """The statements with the angle moved onto the arc, behind where it was bound."""
     names = {f(measure.angle): real(f"{f(measure.angle).name}_before_{condition.word}") for f in (cosine, sine)}
     found: list[Statement] = []
     for s in statements:
@@ -172,13 +179,13 @@ def _moved(statements: Sequence[Statement], measure: Measure, condition: _Condit
 
 
 def _motion(measure: Measure, condition: _Condition) -> tuple[Let, ...]:
-    """Where the angle moves, in terms of where it was."""
+    """The angle on the arc, computed from where it was."""
     word = condition.word
     value, size = (real(f"{name}_{word}") for name in ("value", "size"))
     lets, total, slopes = _parts(condition)
     return (
         *lets,
-        Let(value, total, f"a later step needs this of {measure.angle.name}: no larger in size than"),
+        Let(value, total, WITHIN_ITS_BOUND.format(condition.step)),
         Let(size, sp.Abs(condition.size)),
         *nearest_on_arc(word, value, size, slopes, (cosine(measure.angle), sine(measure.angle))),
     )
@@ -187,9 +194,10 @@ def _motion(measure: Measure, condition: _Condition) -> tuple[Let, ...]:
 def nearest_on_arc(
     word: str, value: sp.Expr, size: sp.Expr, slopes: tuple[sp.Expr, sp.Expr], angle: tuple[sp.Expr, sp.Expr]
 ) -> tuple[Let, ...]:
-    """`moved_<word>`: the u nearest to where it was at which a value is no larger in size; on its side of the arc's centre.
+    """`moved_<word>`: the u nearest to where it was, on its side of the centre, at which |value| <= size.
 
-    slopes: of the value by cos u and sin u. angle: the cosine and sine of u where it was, and where the value is `value`.
+    slopes: the derivatives of the value by cos u and sin u. angle: the cosine and sine of u where it was; `value` is its value
+    there.
     """
     cos_u, sin_u = angle
     along, across, swing, level = (real(f"{name}_{word}") for name in ("along", "across", "swing", "level"))
@@ -203,7 +211,7 @@ def nearest_on_arc(
         Let(swing, Root(along**2 + across**2)),
         Let(level, value - along * cos_u - across * sin_u),
         Let(divisor, Select(turns, swing, one)),
-        Let(highest, Select(turns, _cosine_of((size - level) / divisor), one), "the arc: cosines from its centre"),
+        Let(highest, Select(turns, _cosine_of((size - level) / divisor), one), "feasible arc: cosines of its ends"),
         Let(lowest, Select(turns, _cosine_of((-size - level) / divisor), -one)),
         Let(near, Wrap(Atan2(Root((1 - highest) * (1 + highest)), highest))),
         Let(far, Wrap(Atan2(Root((1 - lowest) * (1 + lowest)), lowest))),
@@ -215,7 +223,7 @@ def nearest_on_arc(
 
 
 def _parts(condition: _Condition) -> tuple[tuple[Let, ...], sp.Expr, tuple[sp.Expr, sp.Expr]]:
-    """The parts under names, e at the angle, and the coefficients of its first harmonic."""
+    """The values under names, e at the angle, and the coefficients of its first harmonic."""
     before = {let.name: real(f"{let.name.name}_before_{condition.word}") for let in condition.chain}
     lets = [Let(before[let.name], let.value.xreplace(before)) for let in condition.chain]
     fixed: dict[sp.Symbol, sp.Expr] = {}
@@ -235,7 +243,7 @@ def _cosine_of(value: sp.Expr) -> sp.Expr:
 
 
 def _bound(measure: Measure, condition: _Condition, names: dict[sp.Symbol, sp.Symbol]) -> list[Let]:
-    """Cosine and sine after the motion, where it is needed and costs no more than rounding."""
+    """Cosine and sine behind the motion, which is made where it is needed and costs no more than rounding."""
     word, before = condition.word, [names[f(measure.angle)] for f in (cosine, sine)]
     value, size, moved, costs = (real(f"{name}_{word}") for name in ("value", "size", "moved", "cost"))
     stays = flag(f"stays_{word}")
@@ -248,13 +256,13 @@ def _bound(measure: Measure, condition: _Condition, names: dict[sp.Symbol, sp.Sy
     dear = sp.And(sp.Gt(share, FREE_ANGLE), sp.Gt(costs, ROUNDING))
     return [
         *(Let(n, v) for n, v in zip(names_after, after, strict=True)),
-        Let(costs, share * chord, "what the motion changes of the pose"),
+        Let(costs, share * chord, "change of the pose by this motion"),
         Let(stays, dear),
         *(
             Let(
                 f(measure.angle),
                 Select(reached, b, Select(beyond, b, Select(stays, b, a))),
-                "kept where the rest can be reached",
+                f"moved to where {condition.step.name} has a solution, if that changes the pose by rounding only",
             )
             for f, a, b in zip((cosine, sine), names_after, before, strict=True)
         ),

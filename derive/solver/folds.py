@@ -1,15 +1,14 @@
-"""Folds: the angle of a two-root step turns, within rounding, to where a later step reaches.
+"""Folds: where the two roots of a step nearly meet, its angle is turned, within rounding, to where a later step has a solution.
 
-A two-root step aims v at a point (along, across): along cos v + across sin v = beside, and what is ahead is a root,
--across cos v + along sin v = sigma sqrt(distance² - beside²). What rounding leaves of the radicand, some eps, is sqrt(eps) in
-a root near zero, and eps / root in v. Where a later step needs |e| <= h of v and stands at its own boundary, e is then beyond h
-by far more than rounding, and two singularities at once would lose the pose. So v turns to where the later step reaches, if what
-is left of its own equation is rounding. By how much it turns e says to first order, e + e' t = ± h; where that turns a later
-angle that is nearly free, which no first order tells, see `sweeps`. Where e is within its bound, or the root is not near zero,
-v stays, and nothing of this is looked at.
+A two-root step solves along cos v + across sin v = beside for v. The distance ahead is a root:
+along sin v - across cos v = sigma sqrt(distance² - beside²). A rounding error eps of the radicand becomes sqrt(eps) in a root
+near zero, and eps / root in v. A later step needs |e| <= h, where e depends on v. If it is at its own boundary, e is then
+beyond h by far more than rounding: where two singularities coincide, the pose would be refused. So v is turned to where the
+later step has a solution, if the residual of v's own equation stays within rounding. The turn t follows from the first order,
+e + e' t = ± h. Where this turns a later angle that is nearly free, the first order does not suffice: see `sweeps`.
+Where e is within its bound, or the root is not near zero, v stays.
 
-What is ahead is not projected again: along sin v - across cos v is the root, which is as long as the triangle says even where
-v is free and points anywhere.
+The distance ahead is not computed from v again: the root is as long as the triangle says even where v is free.
 """
 
 from __future__ import annotations
@@ -45,14 +44,18 @@ from derive.ir.symbols import (
     flag,
     real,
 )
+from derive.solver.feasible_arc import WITHIN_ITS_BOUND
 from derive.solver.sweeps import WAYS, Sweep, sweep_of, swept
 
 
 @dataclass(frozen=True)
 class _Later:
-    """What a later step needs of the angle of an earlier one: |value| <= size, and how the value follows from the angle."""
+    """The condition of a later step on the angle of an earlier one: |value| <= size, and how the value follows from the angle."""
 
+    step: sp.Symbol
+    """The unknown of the later step."""
     word: str
+    """What the names of this motion end in."""
     angle: sp.Symbol
     legs: Legs
     size: sp.Expr
@@ -62,7 +65,7 @@ class _Later:
 
     @property
     def bound(self) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
-        """What the earlier step binds: what is ahead, and the cosine and sine of its angle."""
+        """What the earlier step binds: the distance ahead, and the cosine and sine of its angle."""
         return (self.legs.root, cosine(self.angle), sine(self.angle))
 
     def name(self, word: str) -> sp.Symbol:
@@ -77,7 +80,7 @@ class _Later:
 def beyond_folds(
     statements: Sequence[Statement], slopes: Sequence[Slope], measures: Sequence[Measure], scale: sp.Expr
 ) -> tuple[Statement, ...]:
-    """The derivation with the angle of every two-root step near its fold where later steps have solutions."""
+    """The derivation with the angle of every two-root step near its fold turned to where later steps have solutions."""
     found = list(statements)
     for slope in slopes:
         if slope.legs is None:
@@ -91,7 +94,7 @@ def beyond_folds(
 
 
 def _through_legs(statement: Statement, angle: sp.Symbol, legs: Legs) -> Statement:
-    """A multiple of what is ahead or beside as what it is."""
+    """The statement, where its value is a multiple of the distance ahead or beside, with that distance by its name."""
     own = (cosine(angle), sine(angle))
     if not isinstance(statement, Let) or statement.name in own or not statement.value.is_polynomial():
         return statement
@@ -107,7 +110,7 @@ def _through_legs(statement: Statement, angle: sp.Symbol, legs: Legs) -> Stateme
 
 
 def _later(statements: Sequence[Statement], slope: Slope, step: Slope, scale: sp.Expr) -> _Later | None:
-    """What a later step needs of a two-root step; None where it needs nothing."""
+    """The condition of a later step on a two-root step; None where it does not depend on it."""
     if slope.legs is None or step.reach is None or step is slope:
         return None
     angle = slope.step
@@ -126,8 +129,8 @@ def _later(statements: Sequence[Statement], slope: Slope, step: Slope, scale: sp
             wanted |= let.value.free_symbols
             chain.insert(0, let)
     if slope.legs.beside == 0 and not any(let.value.free_symbols & {cosine(angle), sine(angle)} for let in chain):
-        return None  # what is ahead is the whole distance, however the angle turns
-    return _Later(f"{angle.name}_for_{step.step.name}", angle, slope.legs, size, value, tuple(chain), scale)
+        return None  # the distance ahead is the whole distance, whatever the angle
+    return _Later(step.step, f"{angle.name}_for_{step.step.name}", angle, slope.legs, size, value, tuple(chain), scale)
 
 
 def _moved(statements: Sequence[Statement], later: _Later, sweep: Sweep | None) -> list[Statement]:
@@ -144,21 +147,21 @@ def _moved(statements: Sequence[Statement], later: _Later, sweep: Sweep | None) 
 
 
 def _motion(later: _Later, sweep: Sweep | None) -> tuple[Let, ...]:
-    """Where the angle turns, in terms of where it was."""
+    """The angle behind the turn, computed from where it was."""
     lets, names, rates = _rates(later)
     value, size, rate, excess, divisor, turn = map(later.name, ("value", "size", "rate", "excess", "divisor", "turn"))
     slope = sp.Add(*[sp.diff(later.value, n) * r for n, r in rates.items() if n in later.value.free_symbols])
     is_steep = sp.Gt(sp.Abs(rate), ROUNDING * size)
-    flat = sp.Integer(0 if sweep is None else 1)  # a turn so far that it follows
+    flat = sp.Integer(0 if sweep is None else 1)  # a turn of one radian, which is far enough for the angle to follow
     follows = () if sweep is None else (*swept(sweep, later.angle, names, rates, later.word), *_swept(later))
     return (
         *lets,
-        Let(value, later.value.xreplace(names), f"a later step needs this of {later.angle.name}: no larger in size than"),
+        Let(value, later.value.xreplace(names), WITHIN_ITS_BOUND.format(later.step)),
         Let(size, sp.Abs(later.size)),
-        Let(rate, slope.xreplace(names), f"how it changes with {later.angle.name}"),
+        Let(rate, slope.xreplace(names), f"its derivative by {later.angle.name}"),
         Let(excess, Select(sp.Gt(value, 0), value - size, value + size)),
         Let(divisor, Select(is_steep, rate, sp.Integer(1))),
-        Let(turn, Select(is_steep, -excess / divisor, flat), "to the boundary of the later step"),
+        Let(turn, Select(is_steep, -excess / divisor, flat), f"turn of {later.angle.name} to the bound, to first order"),
         *_turned(later, turn),
         *follows,
         *_taken(later, is_swept=sweep is not None),
@@ -166,7 +169,7 @@ def _motion(later: _Later, sweep: Sweep | None) -> tuple[Let, ...]:
 
 
 def _turned(later: _Later, turn: sp.Symbol) -> tuple[Let, ...]:
-    """What is ahead, the cosine and the sine behind a turn, and what is left of the step's own equation."""
+    """The distance ahead, the cosine and the sine behind a turn, and the residual of the step's own equation."""
     root, cos_v, sin_v = (later.before(n) for n in later.bound)
     length = later.name("turned_length")
     return (
@@ -174,36 +177,36 @@ def _turned(later: _Later, turn: sp.Symbol) -> tuple[Let, ...]:
         Let(later.name("turned_ahead"), (root + turn * later.legs.beside) / length),
         Let(later.name("turned_cos"), (cos_v - turn * sin_v) / length),
         Let(later.name("turned_sin"), (sin_v + turn * cos_v) / length),
-        Let(later.name("turned_cost"), _left(later, "turned"), "what is left of its own equation"),
+        Let(later.name("turned_cost"), _residual(later, "turned"), f"residual of the equation of {later.angle.name}"),
     )
 
 
 def _swept(later: _Later) -> tuple[Let, ...]:
-    """The same where the angle follows a later one, the way that costs less; where it is free its equation leaves nothing."""
+    """The same where the angle follows a later one, by the way with the smaller residual; a free angle has no residual."""
     legs, (near, mirrored) = later.legs, (later.name(f"{way}_cost") for way in WAYS)
     determined = sp.Gt(legs.distance, FREE_ANGLE * later.scale)
     cos_v, sin_v = later.name("swept_cos"), later.name("swept_sin")
     chosen = (Select(sp.Le(near, mirrored), *(later.name(f"{way}_{f}") for way in WAYS)) for f in ("cost", "cos", "sin"))
     return (
-        *(Let(later.name(f"{way}_cost"), Select(determined, _left(later, way), sp.Integer(0))) for way in WAYS),
+        *(Let(later.name(f"{way}_cost"), Select(determined, _residual(later, way), sp.Integer(0))) for way in WAYS),
         *(Let(n, v) for n, v in zip((later.name("swept_cost"), cos_v, sin_v), chosen, strict=True)),
         Let(later.name("swept_ahead"), legs.along * sin_v - legs.across * cos_v),
     )
 
 
-def _left(later: _Later, word: str) -> sp.Expr:
+def _residual(later: _Later, word: str) -> sp.Expr:
     cos_v, sin_v = later.name(f"{word}_cos"), later.name(f"{word}_sin")
     return sp.Abs(later.legs.along * cos_v + later.legs.across * sin_v - later.legs.beside)
 
 
 def _taken(later: _Later, *, is_swept: bool) -> tuple[Let, ...]:
-    """The angle that is taken: as it was far from the fold and where the later step reaches, else turned within rounding."""
+    """The angle as it was where it is far from the fold, or the later step has a solution; else turned within rounding."""
     bests = [later.name(f"best_{word}") for word in ("cost", "ahead", "cos", "sin")]
     chosen = [later.name(f"turned_{word}") for word in ("cost", "ahead", "cos", "sin")]
     if is_swept:
         others = [later.name(f"swept_{word}") for word in ("cost", "ahead", "cos", "sin")]
         chosen = [Select(flag(later.name("follows").name), b, a) for a, b in zip(chosen, others, strict=True)]
-    note = "turned within rounding, where the rest can be reached"
+    note = f"turned, within rounding, to where {later.step.name} has a solution"
     return (
         *(Let(n, c) for n, c in zip(bests, chosen, strict=True)),
         *(Let(n, _where_turned(later, n, v), note) for n, v in zip(later.bound, bests[1:], strict=True)),
@@ -222,7 +225,7 @@ def _is_far(square: sp.Expr, scale: sp.Expr) -> sp.Basic:
 
 
 def _rates(later: _Later) -> tuple[list[Let], dict[sp.Symbol, sp.Expr], dict[sp.Symbol, sp.Expr]]:
-    """The chain before the motion and its derivatives by the angle; the names of values, and the derivatives or their names."""
+    """The chain before the turn with its derivatives by the angle; the names of the values; the derivatives or their names."""
     cos_v, sin_v = cosine(later.angle), sine(later.angle)
     names: dict[sp.Symbol, sp.Expr] = {n: later.before(n) for n in later.bound}
     rates: dict[sp.Symbol, sp.Expr] = {later.legs.root: later.legs.beside, cos_v: -sin_v, sin_v: cos_v}
@@ -240,7 +243,7 @@ def _rates(later: _Later) -> tuple[list[Let], dict[sp.Symbol, sp.Expr], dict[sp.
 
 
 def _rate(let: Let, rates: Mapping[sp.Symbol, sp.Expr], own: sp.Symbol, word: str) -> tuple[list[Let], sp.Expr]:
-    """The derivative of a value, where those of its parts are known."""
+    """The derivative of a value, given those of the values that it reads."""
     if isinstance(let.value, Select):
         condition, *sides = let.value.args
         return [], Select(condition, *(_total(side, rates) for side in sides))
@@ -256,7 +259,7 @@ def _total(value: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
 
 
 def far_from_folds(program: Program) -> Program:
-    """The program where no root is near its fold: else it ends, with the status OK and without an answer."""
+    """The program for poses far from every fold: near one it ends with the status OK and without an answer."""
     conditions = {
         node: sp.true
         for let in program.lets()

@@ -1,6 +1,6 @@
 """Parallel axes: a sum (or difference) of angles as one unknown.
 
-`a4 = a234 - a2 - a3`: where equations hold a2, a3, a4 only through their sum, the sum takes the place of the
+`a4 = a234 - a2 - a3`: where equations depend on a2, a3 and a4 through their sum alone, the sum takes the place of the
 last of them, which follows at the end by the addition theorems.
 """
 
@@ -22,26 +22,26 @@ _FUNCTIONS = ((cosine, sp.cos), (sine, sp.sin))
 
 @dataclass(frozen=True)
 class Sum:
-    """`symbol` stands for the signed sum of `terms`; `replaced` is the term that it takes the place of."""
+    """`symbol` is the signed sum of `terms`; as an unknown it takes the place of the term `replaced`."""
 
     symbol: sp.Symbol
     terms: Terms
     replaced: sp.Symbol
 
     def replacement(self) -> sp.Expr:
-        """The replaced angle through the sum and the other terms."""
+        """The replaced angle as the sum less the other terms."""
         signs = dict(self.terms)
         others = sp.Add(*[a * s for a, s in self.terms if a != self.replaced])
         return (self.symbol - others) * signs[self.replaced]
 
 
 def candidate_sums(problem: Problem, arguments: Sequence[sp.Expr]) -> tuple[Sum, ...]:
-    """Sums worth a try: every argument with several unknown angles, then every difference of two arguments."""
+    """Sums to try: every argument of a sine or cosine with several unknown angles, then every difference of two arguments."""
     differences = [b - a for a, b in combinations(arguments, 2)]
     found: dict[sp.Symbol, Sum] = {}
     for argument in [*arguments, *differences]:
         expanded = sp.expand(argument)
-        constant = expanded.xreplace(dict.fromkeys(expanded.free_symbols, sp.Integer(0)))  # a turn of the base
+        constant = expanded.xreplace(dict.fromkeys(expanded.free_symbols, sp.Integer(0)))  # a fixed rotation of the base
         terms = terms_of(expanded - constant, problem.angles)
         if terms is not None and len(terms) > 1:
             found.setdefault(composite(terms), Sum(composite(terms), terms, terms[-1][0]))
@@ -58,7 +58,7 @@ def substitute(problem: Problem, total: Sum) -> Problem:
 
     def through_sum(equation: Equation) -> Equation:
         if total.replaced in equation.expression.free_symbols:
-            return equation  # a plain angle is no sine: its turns count, so it waits until the angle is known
+            return equation  # the angle stands outside a sine, and its whole turns count: it waits until the angle is known
         expression = reduce_units(equation.expression.xreplace(table), units, problem.signs)
         return replace(equation, expression=expression)
 
@@ -74,7 +74,7 @@ def resolve(problem: Problem, total: Sum) -> Binding | None:
     awaited = (total.symbol, *(a for a, _ in total.terms if a != total.replaced))
     if any(a in (*problem.angles, *problem.pending) for a in awaited):
         return None
-    note = f"{total.replaced.name}: what the sum {total.symbol.name} leaves"
+    note = f"{total.replaced.name} from the sum {total.symbol.name} of angles about parallel axes"
     sign = dict(total.terms)[total.replaced]
     others = tuple((a, s) for a, s in total.terms if a != total.replaced)
     rest = composite(others) if len(others) > 1 else others[0][0]

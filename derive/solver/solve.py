@@ -1,6 +1,6 @@
-"""The driver: peel unknowns by solved subproblems until none is left, or say what is left.
+"""The driver: solve unknowns one after the other by subproblems until none is left, or raise `Unsolved` with the rest.
 
-It knows no mechanism and no rule: it asks every rule for candidates, takes the best, substitutes, repeats.
+It knows no mechanism: it asks every rule for candidates, takes the best, removes its unknowns, and repeats.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quad
 
 
 def _stated(problem: Problem) -> tuple[Equation, ...]:
-    """The equations, and what the rotation says; of one too many, the rotation is asked when the positions are met."""
+    """The equations and those of the rotation; with an equation too many the rotation waits until the positions are solved."""
     if problem.is_overdetermined and problem.equations:
         return problem.equations
     return problem.equations + rotations(problem)
@@ -47,7 +47,7 @@ class Unsolved(Exception):
 
 @dataclass(frozen=True)
 class Derivation:
-    """The solution as statements, with its branches and with what must not vanish."""
+    """The solution as statements, with the slopes of its two-root steps and the measures that must not vanish."""
 
     statements: tuple[Statement, ...]
     slopes: tuple[Slope, ...]
@@ -55,17 +55,17 @@ class Derivation:
     rules: tuple[str, ...]
     sums: tuple[Sum, ...] = ()
     residuals: tuple[sp.Expr, ...] = ()
-    """Of one equation too many: what vanishes if the equations agree with each other."""
+    """With an equation too many: the expressions that vanish if the equations agree with each other."""
     plain: tuple[Statement, ...] = ()
-    """The statements without what keeps roots and free angles where later steps reach: what their names mean."""
+    """The statements without `beyond_folds` and `within_reach`: the plain definitions of the names."""
 
 
 def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation:
     """Solve a problem.
 
-    `arguments` are the arguments of sines and cosines in the original equations, where sums of parallel
-    angles can be read. `resolve_angle` gives the statements that bind an angle itself (its turns chosen), for
-    equations that hold it outside sines and cosines.
+    arguments: those of the sines and cosines in the original equations, from which sums of angles about parallel axes are
+    read. resolve_angle: gives the statements that bind an angle with its whole turns, for equations in which it stands outside
+    sines and cosines. Raises `Unsolved` where no rule applies.
     """
     ledger = Ledger()
     sums: tuple[Sum, ...] = ()
@@ -103,7 +103,7 @@ def _next(
         return problem, found, sums
     for total in candidate_sums(problem, arguments):
         trial = substitute(problem, total)
-        wanted = TIERS if found is None else TIERS[:1]  # half the digits of a cosine alone: rather both functions of a sum
+        wanted = TIERS if found is None else TIERS[:1]  # a cosine alone loses half the digits: both functions of a sum are better
         better = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in wanted)
         if better is not None and (found is None or (better.rank < found.rank and problem.turns)):
             return trial, better, (*sums, total)
@@ -126,7 +126,7 @@ def _best(tiers: Iterable[list[Binding]]) -> Binding | None:
 
 
 def _without(problem: Problem, binding: Binding, ledger: Ledger) -> Problem:
-    """The problem once the binding is known."""
+    """The problem without the unknowns of a binding."""
     known = set(binding.unknowns)
     rest = replace(
         problem,

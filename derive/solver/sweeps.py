@@ -1,13 +1,14 @@
-"""Sweeps: where a root near its fold turns a later angle that is nearly free, that angle is chosen and the earlier one follows.
+"""Sweeps: where an angle near its fold turns a later angle that is nearly free, the later one is chosen and the earlier follows.
 
-Behind a two-root step for v a partial step takes u as the direction of (x, y), both linear in cos v and sin v. Where (x, y)
-nearly vanishes and v is known to half of the digits, or not at all, u sweeps half a turn within what rounding leaves of v: no
-first order of u by v is worth anything. But x sin u = y cos u is linear in cos v and sin v. So u is moved to where a later
-step can reach, and v follows: cos v : sin v = -q : p with p, q what x sin u - y cos u holds of cos v and sin v, of the two
-opposite v that for which (x, y) points along u and not against it. There are two such u, on both sides of the middle of the
-arc, and the one is taken that costs less: what is left of v's own equation. Where p and q vanish any v gives this u, and v stays.
-Where u is free behind v as well, the nearer v is taken: at half of the threshold, for what is nearer to it than rounding is not
-known to be free, and a u that the step behind still takes from (x, y) must not point against it.
+After a two-root step for v, another step takes u as the polar angle of (x, y), both linear in cos v and sin v. Where (x, y)
+nearly vanishes, and v is known to half of its digits or not at all, u sweeps half a turn while v changes by rounding: the
+derivative of u by v says nothing. But x sin u = y cos u is linear in cos v and sin v. So u is moved to where a later step has a
+solution, and v follows from p cos v + q sin v = 0, the coefficients of x sin u - y cos u: cos v : sin v = -q : p. Of the two
+opposite v the one is taken for which (x, y) points along u. There are two such u, one on each side of the centre of the
+feasible arc; the one is taken that leaves the smaller residual of v's own equation.
+Where p and q vanish every v gives this u, and v stays. Where u is free behind v as well, the v nearer to where it was is taken.
+This is decided at half of the threshold: within rounding of the threshold the next step may still take u from (x, y), and must
+not then find it pointing the other way.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ Row = tuple[sp.Expr, sp.Expr]
 
 @dataclass(frozen=True)
 class Sweep:
-    """A later angle that the root may turn by any amount."""
+    """A later angle that a small change of the earlier one may turn by any amount."""
 
     angle: sp.Symbol
     """u"""
@@ -51,14 +52,14 @@ class Sweep:
     parts: tuple[sp.Symbol, sp.Symbol]
     """x, y"""
     x: Row
-    """What x holds of cos v and sin v."""
+    """The coefficients of cos v and sin v in x."""
     y: Row
     harmonic: Row
-    """What the later step's value holds of cos u and sin u."""
+    """The coefficients of cos u and sin u in the value of the later step."""
 
 
 def sweep_of(chain: Sequence[Let], value: sp.Expr, first: sp.Symbol, measures: Sequence[Measure]) -> Sweep | None:
-    """The partial step whose angle turns with that of an earlier step, on the way to the value; None where there is none."""
+    """The step with a measure by which a value depends on an earlier angle; None where there is none."""
     lets = {let.name: let for let in chain}
     for measure in measures:
         bound = lets.get(cosine(measure.angle)), lets.get(sine(measure.angle))
@@ -76,7 +77,7 @@ def sweep_of(chain: Sequence[Let], value: sp.Expr, first: sp.Symbol, measures: S
 
 
 def _through(value: sp.Expr, lets: Mapping[sp.Symbol, Let], first: sp.Symbol) -> sp.Expr:
-    """A value through the cosine and sine of the first angle."""
+    """A value as an expression of the cosine and sine of the first angle."""
     return _written_out(value, {n: s.value for n, s in lets.items() if n not in (cosine(first), sine(first))})
 
 
@@ -88,7 +89,7 @@ def _written_out(value: sp.Expr, definitions: Mapping[sp.Symbol, sp.Expr]) -> sp
 
 
 def _harmonic(value: sp.Expr, lets: Mapping[sp.Symbol, Let], angle: sp.Symbol) -> Row | None:
-    """What a value holds of cos u and sin u, where it is linear in them and squares of sines and cosines are put together."""
+    """The coefficients of cos u and sin u in a value, where its normal form is linear in them; else None."""
     own = {cosine(angle), sine(angle)}
     angles = [a for n in lets if n.name.startswith("cos_") for a in [real(n.name.removeprefix("cos_"))] if sine(a) in lets]
     functions = {f(a) for a in angles for f in (cosine, sine)}
@@ -103,15 +104,15 @@ def _harmonic(value: sp.Expr, lets: Mapping[sp.Symbol, Let], angle: sp.Symbol) -
 
 
 WAYS = ("near", "mirrored")
-"""u moves to the arc that is on its side of the centre, or to the other."""
+"""u moves to the arc on its side of the centre, or to the other one, the mirror image."""
 
 
 def swept(
     sweep: Sweep, first: sp.Symbol, names: Mapping[sp.Symbol, sp.Expr], rates: Mapping[sp.Symbol, sp.Expr], word: str
 ) -> tuple[Let, ...]:
-    """Where u moves, both ways, and v follows: `<way>_cos_<word>`, `<way>_sin_<word>`; `follows_<word>` where it must.
+    """u moved in both ways, and v that follows: `<way>_cos_<word>`, `<way>_sin_<word>`; `follows_<word>`: whether it must.
 
-    names: of values before the motion; rates: their derivatives by v. `turn_<word>` is how far the first order turns v.
+    names: those of the values before the motion; rates: their derivatives by v. `turn_<word>` is the turn of v to first order.
     """
     before = (names[cosine(sweep.angle)], names[sine(sweep.angle)])
     slopes = (sweep.harmonic[0].xreplace(dict(names)), sweep.harmonic[1].xreplace(dict(names)))
@@ -121,21 +122,21 @@ def swept(
         _follows(sweep, names, rates, word),
         *nearest_on_arc(target, real(f"value_{word}"), (1 - INSIDE) * real(f"size_{word}"), slopes, before),
         *_followed(sweep, moved, (names[cosine(first)], names[sine(first)]), WAYS[0], word),
-        Let(mirrored, 2 * real(f"centre_{target}") - moved, "the other way to the arc"),
+        Let(mirrored, 2 * real(f"centre_{target}") - moved, "mirror image: on the other arc"),
         *_followed(sweep, mirrored, (names[cosine(first)], names[sine(first)]), WAYS[1], word),
     )
 
 
 def _follows(sweep: Sweep, names: Mapping[sp.Symbol, sp.Expr], rates: Mapping[sp.Symbol, sp.Expr], word: str) -> Let:
-    """Whether the turn is so far, or turns u so far, that the second order counts."""
+    """Whether v, or u with it, turns so far that the second order is more than rounding."""
     square = real(f"turn_{word}") ** 2
     dx, dy = (rates[part].xreplace(dict(names)) for part in sweep.parts)
     is_far = sp.Gt(square, BOUNDARY) | sp.Gt(square * (dx**2 + dy**2), BOUNDARY * names[sweep.length] ** 2)
-    return Let(flag(f"follows_{word}"), is_far, f"whether it follows {sweep.angle.name}")
+    return Let(flag(f"follows_{word}"), is_far, f"whether the first order is not enough: then {sweep.angle.name} is chosen first")
 
 
 def _followed(sweep: Sweep, u: sp.Symbol, before: Row, way: str, word: str) -> tuple[Let, ...]:
-    """v where u is given; before: its cosine and sine where it was, which decide where u is free."""
+    """v where u is given. before: the cosine and sine of v where it was; where u is free the nearer v is taken."""
     cos_u, sin_u, p, q, along, radius, length, turned, side, cos_v, sin_v = (
         real(f"{way}_{name}_{word}")
         for name in (
@@ -145,7 +146,7 @@ def _followed(sweep: Sweep, u: sp.Symbol, before: Row, way: str, word: str) -> t
     )  # fmt: skip
     (x1, x2), (y1, y2) = sweep.x, sweep.y
     is_long, one = sp.Gt(radius, BOUNDARY), sp.Integer(1)
-    is_free, (cos_before, sin_before) = sp.Le(sp.Abs(along), FREE_ANGLE * radius / 2), before  # whatever rounding says later
+    is_free, (cos_before, sin_before) = sp.Le(sp.Abs(along), FREE_ANGLE * radius / 2), before  # see above
     ahead = Select(is_free, p * sin_before - q * cos_before, along)
     return (
         Let(cos_u, sp.cos(u)),
@@ -155,8 +156,8 @@ def _followed(sweep: Sweep, u: sp.Symbol, before: Row, way: str, word: str) -> t
         Let(along, p * (x2 * cos_u + y2 * sin_u) - q * (x1 * cos_u + y1 * sin_u)),
         Let(radius, Root(p**2 + q**2)),
         Let(length, Select(is_long, radius, one)),
-        Let(turned, ahead, "of two opposite ways"),
+        Let(turned, ahead, "positive where the vector points along the later angle"),
         Let(side, Select(sp.Lt(turned, 0), -one, one)),
-        Let(cos_v, Select(is_long, -q * side / length, cos_before), "the earlier angle follows"),
-        Let(sin_v, Select(is_long, p * side / length, sin_before), "it stays where every angle gives this one"),
+        Let(cos_v, Select(is_long, -q * side / length, cos_before), "the earlier angle follows the later one"),
+        Let(sin_v, Select(is_long, p * side / length, sin_before), "it stays where every angle gives this later one"),
     )

@@ -1,4 +1,4 @@
-"""The comment of a function block: its description in reStructuredText, as the configurator shows it."""
+"""The comment of a function block: its description in reStructuredText, which the configurator shows."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "
 _PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 open"
 _BRANCH = "0 automatic, 3 where both solutions coincide"
 _READ = (
-    f"A commanded rotation may be one to a few digits only, as from REAL: where its transpose times itself differs from the "
-    f"identity by more than {float(EXACT_ROTATION):g} it is repaired (z, the direction of the tool, is kept), by more than "
-    f"{float(ROTATION):g} refused."
+    f"A commanded rotation may have few exact digits, as from REAL. Where its transpose times itself differs from the identity "
+    f"by more than {float(EXACT_ROTATION):g} it is repaired (z, the direction of the tool, is kept); by more than "
+    f"{float(ROTATION):g} it is refused."
 )
-_NOT_READ = "The commanded rotation is not looked at."
+_NOT_READ = "The commanded rotation is not read."
 _COST_HEAD = ("Method", "Additions", "Multiplications", "Divisions", "Square roots", "Sines")
 _OPEN_TURN = (
-    f"A turn that is left open: an axis whose limits in the block are at most {ONE_TURN} degrees apart takes its one value "
-    "inside them, wherever the reference is. Any other takes the value nearest to the reference, and the limits alone refuse: "
-    f"they choose no other turn. So enter the limits of a range of up to {ONE_TURN} degrees in the block, too; of an axis with a "
-    "wider range name the turn for point-to-point movements. Where the turn is what refuses, Diagnose says so, and iTurn is "
-    "the one to name."
+    f"Without a commanded turn, an axis whose limits in the block are at most {ONE_TURN} degrees apart takes its one value "
+    "inside them, wherever the reference is. Any other axis takes the value nearest to the reference, and its limits only "
+    f"refuse: they never choose another turn. So enter the limits of a range of up to {ONE_TURN} degrees in the block, too. For "
+    "an axis with a wider range command the turn of a point-to-point movement. Where another turn would be inside the limits, "
+    "Diagnose says so, and iTurn is its number."
 )
 _KINDS = {
     (True, False): "Position kinematics for a SoftMotion axis group. ",
@@ -46,16 +46,16 @@ _KINDS = {
 }
 """By whether it is a position kinematics, and whether an orientation kinematics."""
 _WITHOUT_LENGTH = (
-    f"where an axis is free: within {float(FREE_ANGLE):g} of your unit of length. The machine has no length that a distance from "
-    "there could be compared with: its margin is 1 elsewhere, and IsSingularity gives no warning before"
+    f"where an axis is free: within {float(FREE_ANGLE):g} of your unit of length. The machine has no length to compare this "
+    "distance with: the margin is 1 everywhere else, and IsSingularity gives no warning before"
 )
 _AUTOMATIC = (
     "Automatic bytes take the solution nearest to the reference. They are meant for point-to-point movements; "
     "limits refuse a solution, they never choose another one."
 )
 _DRIVES = (
-    "The limits that SoftMotion hands over (AxisSettings) narrow those of the block: what is inside both decides which turn "
-    "of an axis is taken, and what is refused. Where none are handed over, the limits of the block count alone."
+    "The limits that SoftMotion hands over (AxisSettings) narrow those of the block: the range inside both decides which turn "
+    "of an axis is taken, and which poses are refused. Where none are handed over, the limits of the block alone decide."
 )
 
 
@@ -95,7 +95,7 @@ def _parameters(block: Block) -> Iterator[Sequence[str]]:
 
 
 def _refused(kinematics: Kinematics) -> str:
-    """The lengths that may not be 0, which is what they are where nothing is given."""
+    """The sentence on the lengths that may not be 0, the value of a parameter that is not given."""
     lengths = [input_name(p) for p in kinematics.parameters if p.role in (Role.LENGTH, Role.SIGNED_LENGTH)]
     return f"A length has no default: Initialize refuses 0 for {', '.join(lengths)}. " if lengths else ""
 
@@ -159,9 +159,8 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
     yield from wrap(f"{text}. No run on a controller.", _WIDTH)
     if inverted is not None and inverted.missed is not None:
         missed, total = inverted.missed
-        yield from wrap(
-            f"A search is no proof: of {total} solutions, most of them next to where branches meet, it missed {missed}.", _WIDTH
-        )
+        text = f"A root scan is no proof: of {total} solutions, most of them close to where branches meet, it missed {missed}."
+        yield from wrap(text, _WIDTH)
 
 
 def _costs(costs: Costs, block: Block) -> Iterator[str]:

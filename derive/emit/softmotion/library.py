@@ -43,8 +43,8 @@ _SHARED = "softkin"
 """The folder of the objects that all blocks share."""
 _PREAMBLE = f"""\
 // {GENERATED}
-// To paste: between two rulers stands the declaration or the implementation of the object that the upper one
-// names.
+// To paste: the text between two rulers is the declaration or implementation of the object that the upper
+// ruler names.
 """
 
 

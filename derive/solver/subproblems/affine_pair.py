@@ -1,7 +1,7 @@
 """Affine pair:  k1 v + m1 w = e1,  k2 v + m2 w = e2  with k1 m2 - k2 m1 never zero.
 
-One root, by Cramer's rule. Slope k1 m2 - k2 m1. No degenerate case: equations whose slope can vanish are not taken.
-Each coefficient may vanish by itself: a table that turns exchanges its axes.
+One root, by Cramer's rule. Slope k1 m2 - k2 m1. There is no degenerate case: equations whose slope can vanish are not taken.
+A single coefficient may vanish: a table turned by 90 degrees exchanges its axes.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def affine_pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[B
         slope = problem.reduce(k1 * m2 - k2 * m1)
         if not problem.is_never_zero(slope):
             continue
-        note = f"{unknowns[0].name}, {unknowns[1].name}: affine in the {first.label} and {second.label} equations"
+        note = f"{unknowns[0].name} and {unknowns[1].name} from the {first.label} and {second.label} equations, linear in both"
         inverse = slope if slope in problem.signs or -slope in problem.signs else 1 / slope
         values = [problem.tidy(v * inverse) for v in (m1 * rest2 - m2 * rest1, k2 * rest1 - k1 * rest2)]
         lets = (Let(unknowns[0], values[0], note), Let(unknowns[1], values[1]))

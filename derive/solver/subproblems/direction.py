@@ -1,7 +1,7 @@
 """Direction:  cos u : sin u = along : across.
 
-One root. Where the measure (the length that turns) vanishes nothing determines u: it takes its reference.
-The angle is normalised by the length of (along, across) itself, so that sin^2 + cos^2 = 1 to rounding.
+One root. Where the measure (the length of the vector that turns) vanishes nothing determines u: it takes the value of the
+reference. Cosine and sine are divided by the length of (along, across) itself, so that sin^2 + cos^2 = 1 to rounding.
 """
 
 from __future__ import annotations
@@ -25,6 +25,8 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     real,
 )
+
+AT_THE_SINGULARITY = "in the singularity: the angle of the reference"
 
 
 def direction(
@@ -52,7 +54,7 @@ def direction(
         Let(cos_name, along, note),
         Let(sin_name, across),
         Let(length, Select(long_enough, measure if is_length else Root(square), sp.Integer(1))),
-        Let(cosine(angle), Select(determined, cos_name / length, cos_free), "its reference where it is free"),
+        Let(cosine(angle), Select(determined, cos_name / length, cos_free), AT_THE_SINGULARITY),
         Let(sine(angle), Select(determined, sin_name / length, sin_free)),
     )
 
@@ -64,7 +66,7 @@ def free_angle(problem: Problem, angle: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
 
 
 def _free(problem: Problem, angle: sp.Symbol) -> sp.Expr:
-    """The reference, on the half circle that the machine has."""
+    """The reference, moved onto the half circle that the machine has."""
     reference = problem.free[angle]
     if sine(angle) in problem.positive:
         return NearestOnArc(reference, sp.pi / 2, sp.pi / 2)

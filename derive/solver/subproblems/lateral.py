@@ -1,9 +1,10 @@
-"""Lateral: a cos u + b sin u = e, where (a, b) is a commanded point that u aims at and e how far beside the arm it is.
+"""Lateral:  a cos u + b sin u = e  with a commanded point (a, b), which an arm with the lateral offset e must reach.
 
-Two roots: with h = |(a, b)| and how far the point is ahead, s = sigma sqrt((h - e)(h + e)), cos u = (a e - b s) / h^2 and
+This is Paden and Kahan's subproblem 4 with a point that moves. Two roots: let h = |(a, b)| be the distance of the point from
+the axis of u, and s = sigma sqrt((h - e)(h + e)) how far ahead of the axis the point is. Then cos u = (a e - b s) / h^2 and
 sin u = (b e + a s) / h^2. The radicand stays a product. Slope a sin u - b cos u = s: sigma is its sign.
-Guard: |e| <= h, else the point is nearer to the axis than the arm is beside it. Degenerate case: the point on the axis, where
-no h is left: nothing can be reached unless e vanishes too, and then u is free. So h is the measure where e is zero.
+Guard: |e| <= h, else the point is closer to the axis than the lateral offset is long. Degenerate case: the point is on the
+axis, h = 0. It cannot be reached unless e is zero too, and then u is free. So h is the measure where e is zero.
 """
 
 from __future__ import annotations
@@ -31,23 +32,23 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     real,
 )
-from derive.solver.subproblems.direction import direction, free_angle
+from derive.solver.subproblems.direction import AT_THE_SINGULARITY, direction, free_angle
 from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.shortfall import out_of_reach
 
 Row = tuple[sp.Expr, sp.Expr, sp.Expr]
-_AHEAD = "how far ahead of the axis the point is; negative: behind"
+_AHEAD = "how far ahead of the axis the point is; negative: behind it"
 
 
 def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: Row) -> Binding:
-    """The two directions in which an arm meets a commanded point."""
+    """The two angles at which an arm reaches a commanded point."""
     a, b, e = row
     naming = Naming(problem, equation.lets)
     along, across = naming.named(a, f"point_x_{angle.name}"), naming.named(b, f"point_y_{angle.name}")
-    distance = naming.length(f"distance_{angle.name}", along, across, note=f"{angle.name}: of the point from its axis")
+    distance = naming.length(f"distance_{angle.name}", along, across, note=f"distance of the point from the axis of {angle.name}")
     scale = equation.scales.get(angle, problem.scale)
     slope = Slope(angle, a * sine(angle) - b * cosine(angle), scale)
-    note = f"{angle.name}: aimed by the {equation.label} equation"
+    note = f"rotation by {angle.name} that points the arm at the point"
     if e == 0:
         one_way = _only_way(problem, slope.value)
         way = slope.sigma if one_way is None else one_way
@@ -59,12 +60,12 @@ def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: 
         legs = Legs(ahead.name, distance**2, sp.Integer(0), distance, along, across)
         with_legs = replace(slope, legs=legs) if one_way is None else None
         return Binding("lateral", (angle,), (*naming.lets, ahead, *known), with_legs, measure)
-    beside = naming.named(e, f"beside_{angle.name}", "how far beside the arm the point is")
+    beside = naming.named(e, f"beside_{angle.name}", "lateral offset of the arm")
     return _beside(problem, angle, naming, (along, across, beside, distance), slope, note)
 
 
 def _only_way(problem: Problem, slope: sp.Expr) -> sp.Expr | None:
-    """The sign of the slope, where an equation says that it is, or is opposite to, a length that is positive."""
+    """The sign of the slope where an equation makes the slope equal or opposite to a positive length; else None."""
     for equation in problem.equations:
         for sign in (sp.Integer(1), sp.Integer(-1)):
             if problem.is_positive(problem.reduce(equation.expression - sign * slope)):
@@ -91,12 +92,12 @@ def _beside(
     sin_value = (across * beside + along * ahead) / divisor
     statements: tuple[Statement, ...] = (
         *naming.lets,
-        Let(rounding, BOUNDARY * shortest**2, "what rounding may leave of a square of lengths"),
-        Let(square, (distance - beside) * (distance + beside), note),
+        Let(rounding, BOUNDARY * shortest**2, "rounding error of a squared length"),
+        Let(square, (distance - beside) * (distance + beside), "Pythagoras: square of the distance ahead of the axis"),
         Require(sp.Ge(square, -BOUNDARY * distance**2 - rounding), Status.UNREACHABLE, reason=reason),
         Let(ahead, slope.sigma * Root(square), _AHEAD),
         Let(divisor, Select(determined, distance**2, sp.Integer(1))),
-        Let(cosine(angle), Select(determined, cos_value, cos_free), "its reference where it is free"),
+        Let(cosine(angle), Select(determined, cos_value, cos_free), f"{note}; {AT_THE_SINGULARITY}"),
         Let(sine(angle), Select(determined, sin_value, sin_free)),
     )
     legs = Legs(ahead, square, beside, distance, along, across)

@@ -1,4 +1,4 @@
-"""Names for what is known: one symbol per entry, so that discriminants stay factored and programs read well."""
+"""Names for known values: one symbol per value, so that discriminants stay factored and programs read well."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from derive.ir.symbols import (
 
 
 class Naming:
-    """Collects the bindings of one subproblem's known entries. Equal values share a name."""
+    """Collects the bindings of the known values of one subproblem. Equal values share a name."""
 
     def __init__(self, problem: Problem, lets: tuple[Let, ...] = ()) -> None:
         self._known = tuple(a for a in problem.units if a not in problem.angles)
@@ -33,7 +33,7 @@ class Naming:
         return tuple(self._lets)
 
     def named(self, value: sp.Expr, proposal: str, note: str = "") -> sp.Expr:
-        """The value itself where it is a symbol or number, else its name (with a sign where that is shared)."""
+        """The value itself where it is a symbol or a number, else its name, or minus the name of its negative."""
         if not is_compound(value):
             return value
         if all(term.could_extract_minus_sign() for term in sp.Add.make_args(value)):
@@ -45,11 +45,11 @@ class Naming:
         return self._bind(real(_portable(proposal)), value, note)
 
     def product(self, value: sp.Expr, proposal: str, note: str = "") -> sp.Expr:
-        """The name of a product of lengths, in the signs it has."""
+        """The name of a product of lengths; no sign is taken out of it."""
         return self._bind(real(_portable(proposal)), value, note)
 
     def length(self, proposal: str, *sides: sp.Expr, note: str = "") -> sp.Expr:
-        """The name of the root of the sum of squares."""
+        """The name of the length of a vector: the root of the sum of its squared sides."""
         return self._bind(real(proposal), Root(sp.Add(*[side**2 for side in sides])), note)
 
     def _bind(self, name: sp.Symbol, value: sp.Expr, note: str) -> sp.Expr:
@@ -67,5 +67,5 @@ class Naming:
 
 
 def _portable(proposal: str) -> str:
-    """The proposal without what only a label may hold: "a1 radius_of_a2" is a1_radius_of_a2."""
+    """The proposal as an identifier: "a1 radius_of_a2" becomes a1_radius_of_a2."""
     return re.sub(r"[^a-z0-9]+", "_", proposal).strip("_")

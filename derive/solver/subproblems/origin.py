@@ -1,9 +1,10 @@
-"""From the origin: what is known of an equation where the commanded position is zero, and what the position adds to it.
+"""From the origin: the right side e of a law of cosines, without cancellation, as its value at the origin plus an increment.
 
-Of a machine that stands at its origin with given angles, lengths are roots: they cancel there, and what is left of e is a
-multiple of the arm that turns. Where the arm is short the terms of e are larger than e by the ratio of rod and arm. So e is
-taken as what is left at the origin, plus what the position adds: with v the known names that hold it, v0 their values at the
-origin, and e of no more than the second degree in v, e = e(v0) + sum (v - v0) (e_v(v) + e_v(v0)) / 2, with no remainder.
+Some machines state their lengths by the angles at which they stand at the origin, so that lengths are roots. At the origin
+these roots cancel, and e is a multiple of the arm that turns. Where the arm is short, the single terms of e are larger than e
+by the ratio of rod and arm, and their sum loses as many digits. So e is written as its value at the origin plus what the
+commanded position adds. Let v be the known names that depend on the position, and v0 their values at the origin. For e of at
+most the second degree in v the trapezoidal rule is exact: e = e(v0) + sum (v - v0) (e_v(v) + e_v(v0)) / 2.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from derive.equations.problem import Equation, Problem
 
 
 def from_origin(problem: Problem, equation: Equation, value: sp.Expr, arm: sp.Expr) -> sp.Expr | None:
-    """The value, where the roots of the machine leave a multiple of the arm at the origin; None where they do not."""
+    """The value in this form, where its roots cancel to a multiple of the arm at the origin; None where they do not."""
     zero = {c: sp.Integer(0) for c in problem.position}
     moving = {c: c for c in problem.position} | {
         let.name: let.value for let in equation.lets if let.value.free_symbols & zero.keys()
@@ -33,7 +34,7 @@ def from_origin(problem: Problem, equation: Equation, value: sp.Expr, arm: sp.Ex
 
 
 def _mean_rate(value: sp.Expr, name: sp.Symbol, origin: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """Half of the rates at both ends."""
+    """The mean of the derivatives at both ends."""
     rate = sp.diff(value, name)
     return sp.expand((rate + rate.xreplace(origin)) / 2)
 

@@ -2,12 +2,13 @@
 
 One root, by Cramer's rule. Slope D = a1 b2 - a2 b1. Two kinds are taken:
 
-* Turned by u or against it (a1 = s b2 = A, a2 = -s b1 = B with s = +1, -1 or a direction of the machine):
+* A rotation by u takes the vector (A, B) to (e1, e2): Paden and Kahan's subproblem 1. Here a1 = s b2 = A and a2 = -s b1 = B;
+  s is +1, or -1 where u turns the other way, or a sign that is a parameter of the machine.
   D = s (A^2 + B^2), cos u : sin u = A e1 + B e2 : s (A e2 - B e1).
-* Any other with a slope that never vanishes: divided by D.
+* Any other pair with a slope that never vanishes: divided by D.
 
-In the first, |(A, B)| must equal |(e1, e2)|. Where this length is always one nothing is divided; where it
-can vanish the angle is free there (degenerate case) and the length is its measure.
+In the first kind |(A, B)| must equal |(e1, e2)|. Where this length is always one nothing is divided. Where it
+can vanish, u is free there (degenerate case), and the length is its measure.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def _row(problem: Problem, equation: Equation, angle: sp.Symbol) -> Row | None:
 def _solve(problem: Problem, angle: sp.Symbol, used: tuple[Equation, Equation], row1: Row, row2: Row) -> Binding | None:
     (a1, b1, e1), (a2, b2, e2) = row1, row2
     sense = _sense(problem, row1, row2)
-    note = f"{angle.name}: linear pair in the {used[0].label} and {used[1].label} equations"
+    note = f"cosine and sine of {angle.name} from the {used[0].label} and {used[1].label} equations"
     naming = Naming(problem, used[0].lets + used[1].lets)
     e1, e2 = (naming.named(e, f"{u.label}_of_{angle.name}") for e, u in ((e1, used[0]), (e2, used[1])))
     slope = problem.reduce(a1 * b2 - a2 * b1)
@@ -60,6 +61,8 @@ def _solve(problem: Problem, angle: sp.Symbol, used: tuple[Equation, Equation], 
             return _bound(angle, naming, cos_part, sin_part, note)
         reach = naming.length("reach", e1, e2)
         scale = problem.scale_of(used[0])
+        moved = "arm to the point that it must reach" if used[0].is_length else "machine's direction to the commanded one"
+        note = f"rotation by {angle.name} that takes the {moved}"
         known = direction(problem, angle, along=cos_part, across=sin_part, measure=reach, note=note, scale=scale)
         measure, residual = Measure(angle, reach, scale), reach**2 - along**2 - across**2
         return Binding("pair", (angle,), (*naming.lets, *known), measure=measure, residual=residual)
@@ -73,7 +76,7 @@ def _solve(problem: Problem, angle: sp.Symbol, used: tuple[Equation, Equation], 
 
 
 def _sense(problem: Problem, row1: Row, row2: Row) -> sp.Expr | None:
-    """s where the two rows are one vector turned by the angle (+1), against it (-1) or in a direction of the machine."""
+    """s where the rows are one vector rotated by the angle: +1, -1 where it turns the other way, or a sign of the machine."""
     (a1, b1, _), (a2, b2, _) = row1, row2
     for sense in (sp.Integer(1), sp.Integer(-1), *problem.signs):
         if problem.reduce(a1 - sense * b2) == 0 and problem.reduce(b1 + sense * a2) == 0:

@@ -1,8 +1,8 @@
 """Polar:  f cos v = a,  f sin v = b  with both f and v unknown.
 
-v = direction of (sigma a, sigma b), f = sigma |(a, b)|. Two roots, or one where f is known to be positive.
-Slope det = f: its sign is the branch. Where |(a, b)| vanishes v is free (degenerate case); it is the measure.
-f is one unknown length, or a product with another angle's sine or cosine, which then becomes known.
+v is the polar angle of (sigma a, sigma b), and f = sigma |(a, b)| the polar radius. Two roots, or one where f is known to be
+positive. Slope det = f: its sign is the branch. Where |(a, b)| vanishes v is free (degenerate case); it is the measure.
+f is an unknown length, or a product with the sine or cosine of another angle, which then becomes known.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def polar(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding
 
 
 def _radius(problem: Problem, equation: Equation, function: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | None:
-    """f and a, where the equation reads f * function = a with a known and f a product of unknowns."""
+    """(f, a) where the equation is f * function = a with known a and a product f of unknowns; else None."""
     if function not in equation.expression.free_symbols:
         return None
     linear = linear_coefficients(equation.expression, (function,))
@@ -60,8 +60,8 @@ def _solve(
     naming = Naming(problem, along[0].lets + across[0].lets)
     a = naming.named(along[1], f"{along[0].label}_of_{angle.name}")
     b = naming.named(across[1], f"{across[0].label}_of_{angle.name}")
-    distance = naming.length(f"radius_{angle.name}", a, b, note=f"{angle.name}: direction and distance of a point")
-    note = f"{angle.name}: polar angle in the {along[0].label} and {across[0].label} equations"
+    distance = naming.length(f"radius_{angle.name}", a, b, note=f"polar coordinates: the radius at angle {angle.name}")
+    note = f"polar coordinates: angle {angle.name} from the {along[0].label} and {across[0].label} equations"
     sigma, slope = sp.Integer(1), None
     if not _is_positive(problem, radius):
         slope = Slope(angle, radius, problem.scale_of(along[0]))
@@ -79,7 +79,7 @@ def _solve(
 
 
 def _measure(problem: Problem, angle: sp.Symbol, radius: sp.Expr, distance: sp.Expr, scale: sp.Expr) -> Measure:
-    """Of a product such as r sin(phi) the sine alone, a number without a unit: the step that finds r has its own measure."""
+    """For a product such as r sin(phi) the sine alone, which has no unit: the step that finds r has a measure of its own."""
     functions = [f for f in sp.Mul.make_args(radius) if f not in problem.lengths and f.is_Symbol]
     if len(functions) == 0 or len(functions) == len(sp.Mul.make_args(radius)):
         return Measure(angle, distance, scale)

@@ -1,7 +1,7 @@
 """Quadratic:  a v^2 + b v + c = 0  in an unknown length, with a never zero.
 
-Two roots, v = p + sigma root(D), p = -b / 2a, D = p^2 - c / a, kept factored. Slope 2 a (v - p): sigma is its
-sign (times that of a); one root where a quantity known to be positive is a multiple of the slope.
+Two roots, v = p + sigma root(D) with p = -b / 2a and the discriminant D = p^2 - c / a, kept factored. Slope 2 a (v - p):
+sigma is its sign times that of a. One root where a quantity known to be positive is a multiple of the slope.
 Guard: D >= 0; where it vanishes both roots meet (degenerate case).
 """
 
@@ -47,7 +47,7 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
     a, b, c = (sp.sympify(poly.coeff_monomial(unknown**k)) for k in (2, 1, 0))
     naming = Naming(problem, equation.lets)
     middle = naming.named(sp.cancel(-b / (2 * a)), f"middle_{unknown.name}")
-    square = real(f"root_square_{unknown.name}")
+    square = real(f"radicand_{unknown.name}")
     scale = equation.scales.get(unknown, 2 * problem.scale)
     slope = sp.cancel(sp.diff(equation.expression, unknown) / a)
     written_out = slope.xreplace({let.name: let.value for let in equation.lets})
@@ -59,7 +59,7 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
     reaches = Require(sp.Ge(square, -BOUNDARY * half**2), Status.UNREACHABLE, reason=reason)
     statements: tuple[Statement, ...] = (
         *naming.lets,
-        Let(square, radicand, f"{unknown.name}: quadratic in the {equation.label} equation"),
+        Let(square, radicand, f"quadratic equation for {unknown.name}: {equation.label}"),
         *(() if radicand.is_nonnegative else (reaches,)),
         Let(unknown, middle + sigma * Root(square)),
     )
@@ -70,7 +70,7 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
 
 
 def _known_sign(problem: Problem, slope: sp.Expr, unknown: sp.Symbol) -> int | None:
-    """The sign of a slope that is a multiple of a positive quantity, other unknowns written through affine equations."""
+    """The sign of a slope that is a multiple of a positive quantity, with other unknowns eliminated by affine equations."""
     for quantity in problem.positive:
         value = _through(problem, quantity, unknown)
         ratio = sp.cancel(slope / value) if value != 0 else sp.Integer(0)

@@ -1,8 +1,8 @@
 """How much is missing where the radicand of a two-root step is negative: the amount of its reason.
 
-In a product of lengths, (l1 + l2 - r)(l1 + l2 + r)(l1 - l2 + r)(l2 + r - l1) or (r - l)(r + l), it is the factor of least
-size, whatever signs the lengths have. Where a length occurs as its square alone, as the rod l in l^2 - x^2 - y^2, it would
-have to be so much longer or shorter.
+For a product of lengths, (l1 + l2 - r)(l1 + l2 + r)(l1 - l2 + r)(l2 + r - l1) or (r - l)(r + l), this is the size of the
+smallest factor, whatever signs the lengths have. For a length that occurs only as its square, such as the rod l in
+l^2 - x^2 - y^2, it is by how much the rod is too short or too long.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def _missing(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: 
 
 
 def _factors(radicand: sp.Expr) -> list[sp.Expr]:
-    """The sums in a product, in the signs in which all of them are positive where the step has roots."""
+    """The sums in a product, each with the sign that makes it positive where the step has roots."""
     sums = [f for f in sp.Mul.make_args(radicand) if f.is_Add]
     turned = [-f if _negative_terms(f) > 0 else f for f in sums]
     is_negative = radicand.as_coeff_Mul()[0].is_negative
@@ -58,19 +58,19 @@ def _factors(radicand: sp.Expr) -> list[sp.Expr]:
 
 
 def _negative_terms(value: sp.Expr) -> int:
-    """How many more terms of a sum have a minus than have none."""
+    """The number of terms of a sum with a minus, less the number of those without."""
     return sum(1 if term.could_extract_minus_sign() else -1 for term in value.args)
 
 
 def _least_factor(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr:
-    """Of a product of sums of lengths, of which one is negative whatever their signs are: its size."""
+    """The size of the one negative factor in a product of sums of lengths, whatever signs the lengths have."""
     whole = sp.Add(*sums) / 2
     signed = {s for s in whole.free_symbols - lengths if not isinstance(values.get(s), Root | Select)}
     return sp.Add(*[sp.Abs(f) / 2 for f in sums]) - whole.xreplace({s: sp.Abs(s) for s in signed})
 
 
 def _of_rod(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr | None:
-    """How much a length that occurs as its square alone is too short or too long; the square may have a name with others."""
+    """By how much a length that occurs only as its square is too short or too long; names of products are written out."""
     expanded = [sp.expand(_written_out(f, values)) for f in sums]
     for rod in sorted({s for f in expanded for s in f.free_symbols if s in lengths}, key=str):
         signs = [f.coeff(rod, 2) for f in expanded]
@@ -82,7 +82,7 @@ def _of_rod(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: f
 
 
 def _written_out(value: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """A sum with the names in it that are products of lengths."""
+    """A sum with the names of products replaced by these products."""
     return value.xreplace({s: v for s in value.free_symbols if (v := values.get(s, s)).is_Mul})
 
 

@@ -1,9 +1,9 @@
-"""Spheres:  |P - C_i| = r_i  for two circles in the plane, or three spheres in space.
+"""Spheres, or trilateration:  |P - C_i| = r_i  for two circles in the plane, or three spheres in space.
 
-Two roots, mirror images in the line or plane of the centres. With n normal to it and p0 the foot,
-P = C_1 + p0 + sigma root(r_1^2 - |p0|^2) n / |n|. The only division is by |n|^2, which vanishes where the centres
-coincide or lie on a line: nothing determines P then, and the pose is refused. Slope: the determinant of the rod
-vectors P - C_i; its sign is sigma. Guard: the rods reach each other; where they barely do, both roots meet.
+Two roots, mirror images in the line or plane of the centres. Let n be normal to it, and p0 the foot of the perpendicular from
+P, seen from C_1: P = C_1 + p0 + sigma root(r_1^2 - |p0|^2) n / |n|. The only division is by |n|^2, which vanishes where the
+centres coincide or lie on a line: nothing determines P then, and the pose is refused. Slope: the determinant of the rod
+vectors P - C_i; its sign is sigma. Guard: the spheres intersect. Where they touch, both roots meet (degenerate case).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from derive.ir.symbols import (
 )
 
 _ASSEMBLY = real("assembly")
-"""What the step is called that finds all unknowns together."""
+"""The name of the step, which finds all unknowns together."""
 
 
 @dataclass(frozen=True)
@@ -79,22 +79,26 @@ def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ..
     unknowns = problem.lengths
     statements: list[Statement] = [let for e in used for let in e.lets]
     centres = [_named(statements, s.centre, f"centre_{k}", unknowns) for k, s in enumerate(found, 1)]
-    apart = [_named(statements, c - centres[0], f"apart_{k}", unknowns) for k, c in enumerate(centres[1:], 2)]
+    apart = [
+        _named(statements, c - centres[0], f"centre_1_to_{k}", unknowns, f"vector from centre 1 to centre {k}")
+        for k, c in enumerate(centres[1:], 2)
+    ]
     sigma = sign_of(_ASSEMBLY)
     parts = _circles(statements, found, apart[0]) if len(unknowns) == 2 else _three(statements, found, apart)
     foot, normal, normal_square, height_square = parts
-    foot = _named(statements, foot, "foot", unknowns)
-    height = real("height_square")
+    foot = _named(statements, foot, "foot", unknowns, "foot of the perpendicular, seen from centre 1")
+    height, multiple = real("height_square"), real("height_by_normal")
+    base = "line" if len(unknowns) == 2 else "plane"
     length_scale = _length(found[0].radius_square)
     if height_square is None:
         height_square = found[0].radius_square - foot.dot(foot)
     statements += [
-        Let(height, height_square, "the square of the height over the centres"),
+        Let(height, height_square, f"square of the height over the {base} of the centres"),
         Require(sp.Ge(height, -BOUNDARY * length_scale**2), Status.IMPOSSIBLE, reason=about_machine(Why.RODS_APART)),
-        Let(real("rise"), sigma * Root(height / normal_square)),
+        Let(multiple, sigma * Root(height / normal_square), "height, as a multiple of the normal"),
     ]
     for u, c, f, n in zip(unknowns, centres[0], foot, normal, strict=True):
-        statements.append(Let(u, c + f + real("rise") * n))
+        statements.append(Let(u, c + f + multiple * n))
     rods = sp.Matrix.hstack(
         *(_named(statements, sp.Matrix(unknowns) - c, f"rod_{k}", unknowns) for k, c in enumerate(centres, 1))
     )
@@ -104,17 +108,21 @@ def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ..
 
 
 Parts = tuple[sp.Matrix, sp.Matrix, sp.Expr, sp.Expr | None]
-"""Foot, normal, the square of the normal, and of the height where it is known better than from the foot."""
+"""Foot, normal, the square of its length, and the square of the height where it is known better than from the foot."""
 
 
 def _circles(statements: list[Statement], found: tuple[Sphere, ...], apart: sp.Matrix) -> Parts:
-    """Two circles: the normal is `apart` turned a quarter to the left. The height is Heron's, its factors as they are."""
+    """Two circles: the normal is `apart` turned left by 90 degrees. The height follows from Heron's formula, in factors."""
     square = _normal_square(statements, apart.dot(apart), found)
-    between, along = real("between_centres"), real("along_centres")
+    between, along = real("between_centres"), real("foot_fraction")
     first, second = (_named_length(statements, _length(f.radius_square), f"radius_{k}") for k, f in enumerate(found, 1))
     statements += [
-        Let(between, Root(square)),
-        Let(along, ((first - second) * (first + second) + square) / (2 * square), "foot of the height, as a share"),
+        Let(between, Root(square), "distance between the centres"),
+        Let(
+            along,
+            ((first - second) * (first + second) + square) / (2 * square),
+            "foot of the perpendicular, as a fraction of this distance",
+        ),
     ]
     normal = sp.Matrix([-apart[1], apart[0]])
     sides = (first + second - between, between + first - second, between + second - first, between + first + second)
@@ -124,15 +132,17 @@ def _circles(statements: list[Statement], found: tuple[Sphere, ...], apart: sp.M
 def _three(statements: list[Statement], found: tuple[Sphere, ...], apart: list[sp.Matrix]) -> Parts:
     """Foot and normal for three spheres."""
     u, v = apart
-    normal = _named(statements, u.cross(v), "normal", (real("x"), real("y"), real("z")))
+    normal = _named(
+        statements, u.cross(v), "normal", (real("x"), real("y"), real("z")), "normal to the plane of the centres"
+    )
     square = _normal_square(statements, normal.dot(normal), found)
-    shares = []
+    products = []
     for k, w in ((2, u), (3, v)):
-        share = real(f"share_{k}")
+        product = real(f"projection_{k}")
         value = (found[0].radius_square - found[k - 1].radius_square + w.dot(w)) / 2
-        statements.append(Let(share, value, f"how far centre {k} draws the foot"))
-        shares.append(share)
-    foot = (shares[0] * v.cross(normal) + shares[1] * normal.cross(u)) / square
+        statements.append(Let(product, value, f"trilateration: the foot projected on the vector to centre {k}, times its length"))
+        products.append(product)
+    foot = (products[0] * v.cross(normal) + products[1] * normal.cross(u)) / square
     return foot, normal, square, None
 
 
@@ -141,26 +151,30 @@ def _normal_square(statements: list[Statement], value: sp.Expr, found: tuple[Sph
     scale = _length(found[0].radius_square) ** (2 if len(found) == 2 else 4)
     determined = sp.Gt(square, FREE_ANGLE**2 * scale)
     statements += [
-        Let(square, value, "normal to the centres"),
+        Let(square, value, "squared length of the normal"),
         Require(determined, Status.IMPOSSIBLE, reason=about_machine(Why.CENTRES_ON_A_LINE)),
         Let(divisor, Select(determined, square, sp.Integer(1))),
     ]
     return divisor
 
 
-def _named(statements: list[Statement], vector: sp.Matrix, name: str, unknowns: tuple[sp.Symbol, ...]) -> sp.Matrix:
+def _named(
+    statements: list[Statement], vector: sp.Matrix, name: str, unknowns: tuple[sp.Symbol, ...], note: str = ""
+) -> sp.Matrix:
+    """The vector by names of its components, bound here where they are more than a name; the note stands at the first."""
     entries = []
     for value, unknown in zip(vector, unknowns, strict=True):
         if is_compound(value):
             symbol = real(f"{name}_{unknown.name}")
-            statements.append(Let(symbol, value))
+            statements.append(Let(symbol, value, note))
+            note = ""
             value = symbol
         entries.append(value)
     return sp.Matrix(entries)
 
 
 def _named_length(statements: list[Statement], value: sp.Expr, name: str) -> sp.Expr:
-    """The value, under a name where it is not one."""
+    """The value itself where it is a name, else a name that is bound here."""
     if not is_compound(value):
         return value
     statements.append(Let(real(name), value))

@@ -1,11 +1,13 @@
 """Trigonometric:  a cos u + b sin u = e.
 
-Two roots. With h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h:
-cos u = (a C - b S) / h,  sin u = (b C + a S) / h. The two factors stay products: expanded they lose half the digits. C and
-S come from these factors alone, tan^2 of half the angle is their ratio: so C^2 + S^2 = 1 to rounding, whatever e has lost.
-Slope a sin u - b cos u = h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution; where it is 1
-both roots meet (degenerate case). An h that can vanish is refused below 1e-9 of the length it is
-compared with: nothing can be aimed then.
+Paden and Kahan's subproblem 4; where e is made of three sides of a triangle, the law of cosines (their subproblem 3).
+Two roots. Let h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h, the cosine and sine of the angle between u and
+the direction of (a, b). Then cos u = (a C - b S) / h and sin u = (b C + a S) / h. The factors h - e and h + e stay products:
+expanded they lose half the digits. C and S come from these factors alone, whose ratio is the square of the tangent of half the
+angle: so C^2 + S^2 = 1 to rounding, whatever digits e has lost.
+Slope a sin u - b cos u = h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where it is 1
+both roots meet (degenerate case). Where h can vanish, a pose is refused whose h is below 1e-9 of the length that it is
+compared with: the arm then has no length that u could turn.
 """
 
 from __future__ import annotations
@@ -41,6 +43,8 @@ from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.origin import from_origin
 from derive.solver.subproblems.shortfall import out_of_reach
 
+_ADDITION = "addition theorem: plus the angle of the direction from which it is measured"
+
 
 def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
     """Every angle that one equation determines up to a sign."""
@@ -68,7 +72,7 @@ def _is_commanded(problem: Problem, equation: Equation, coefficient: sp.Expr) ->
 
 @dataclass(frozen=True)
 class _Amplitude:
-    """h as a product, the direction of (a, b), and e with squares written through h."""
+    """h as a product, the unit vector along (a, b), and e."""
 
     naming: Naming
     length: sp.Expr
@@ -79,11 +83,11 @@ class _Amplitude:
     slope: sp.Expr
     slope_scale: sp.Expr
     factors: tuple[sp.Expr, sp.Expr] | None = None
-    """h - e and h + e, where they are known better than by what they say."""
+    """h - e and h + e, where they can be computed with fewer rounding errors than by these differences; else None."""
     is_signed: bool = False
     """Whether h may be negative."""
     told: sp.Expr | None = None
-    """(h - e)(h + e) in lengths, where the factors do not say it: how much is missing is told by it."""
+    """(h - e)(h + e) made of lengths, where the factors are not: what is missing is read off it."""
 
 
 def _amplitude(
@@ -101,7 +105,8 @@ def _amplitude(
         return _Amplitude(naming, length, (), one, sp.Integer(0), e, sine(angle), one, is_signed=not length.is_positive)
     square = along**2 + across**2
     along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
-    effective = naming.length(f"effective_{angle.name}", along, across, note="effective length that the angle turns")
+    note = f"effective length of the arm that {angle.name} turns"
+    effective = naming.length(f"effective_{angle.name}", along, across, note=note)
     if problem.is_never_zero(along**2 + across**2):
         right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, effective))
         length = common * effective
@@ -127,27 +132,27 @@ def _law_of_cosines(
     right: sp.Expr,
     turned: tuple[sp.Expr, sp.Expr, sp.Expr],
 ) -> tuple[sp.Expr, tuple[sp.Expr, sp.Expr] | None, sp.Expr | None]:
-    """e, h - e and h + e, and their product in lengths if those are not.
+    """e; the factors h - e and h + e where a triangle is recognised; their product in lengths where the factors are not.
 
-    Where a triangle is seen, these are M - (D - k)^2 and (D + k)^2 - M or the reverse: h = 2 k D.
-
-    D is a multiple of the effective length, k the arm that turns, and M the square of the third side of their triangle.
-    Written out, the terms of D^2 and of M are far larger than what they add up to where the lengths of a machine differ.
+    In a triangle with the sides D and k and the third side of square M, h = 2 k D, and the factors are M - (D - k)^2 and
+    (D + k)^2 - M, or the reverse. D is a multiple of the effective length, and k the arm that turns. Expanded, the terms of
+    D^2 and of M are far larger than their sum where the lengths of a machine differ.
     """
     triangle = _triangle(problem, right, turned)
     if triangle is not None and not _is_square(triangle.third):
-        third = naming.product(_positive(triangle.third), f"third_square_{angle.name}", "square of the third side")
+        word = f"third_square_{angle.name}"
+        third = naming.product(_positive(triangle.third), word, "square of the third side of the triangle")
         triangle = replace(triangle, third=third)
     seen = from_origin(problem, equation, right, turned[0].as_coeff_Mul()[1])
     if seen is not None:
-        named = naming.product(seen, f"scaled_cosine_{angle.name}", "cosine times the scale, seen from the origin")
+        named = naming.product(seen, f"scaled_cosine_{angle.name}", "cosine, times the scale, without cancellation")
         return named, None, None if triangle is None else sp.Mul(*triangle.factors)
     return (right, None, None) if triangle is None else (triangle.right, triangle.factors, None)
 
 
 @dataclass(frozen=True)
 class _Triangle:
-    """Distance and side, whose angle is wanted, and the square of the third side."""
+    """Two sides, `distance` and `side`, which enclose the wanted angle, and the square of the third one."""
 
     distance: sp.Expr
     side: sp.Expr
@@ -157,12 +162,12 @@ class _Triangle:
 
     @property
     def right(self) -> sp.Expr:
-        """The cosine, times twice distance and side."""
+        """The cosine of the angle, times twice the product of distance and side."""
         return sp.expand(self.sense * (self.distance**2 + self.side**2 - self.third))
 
     @property
     def factors(self) -> tuple[sp.Expr, sp.Expr]:
-        """1 - cosine and 1 + cosine, times the same."""
+        """1 - cosine and 1 + cosine of the angle, times the same product."""
         less, more = self.third - (self.distance - self.side) ** 2, (self.distance + self.side) ** 2 - self.third
         if _is_square(self.third):
             less, more = _product(less), _product(more)
@@ -170,7 +175,7 @@ class _Triangle:
 
 
 def _triangle(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, sp.Expr]) -> _Triangle | None:
-    """The triangle that a right-hand side is about, where the square of its third side is a product, or is shorter."""
+    """The triangle whose law of cosines a right side is; None where the square of its third side is not simpler than this."""
     common, square, effective = turned
     number, arm = common.as_coeff_Mul()
     whole = reduce_units(right, problem.units, problem.signs)
@@ -187,10 +192,10 @@ def _triangle(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, 
 
 
 def _with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
-    """A normal form with cos^2 + sin^2 of known angles put back where it was one, so that squares can be seen in it.
+    """A normal form with cos^2 + sin^2 of known angles written for one, so that squares can be recognised.
 
-    p^2 - (p cos u + q sin u)^2 is, in normal form, p^2 - p^2 cos^2 u - ... with 1 - cos^2 u for sin^2 u: with p^2 (cos^2 u +
-    sin^2 u) for its first term it is (p sin u - q cos u)^2.
+    The normal form of p^2 + q^2 - (p cos u + q sin u)^2 has 1 - cos^2 u for sin^2 u. With p^2 (cos^2 u + sin^2 u) for p^2,
+    and the same for q^2, it is (p sin u - q cos u)^2.
     """
     for angle in problem.units:
         functions = {cosine(angle), sine(angle)}
@@ -204,7 +209,7 @@ def _with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
 
 @cache
 def _factored(value: sp.Expr) -> sp.Expr:
-    """In factors, over the roots of numbers that occur."""
+    """The value in factors; their coefficients may be the roots of numbers that occur in it."""
     roots = [r for r in value.atoms(sp.Pow) if r.is_number and not r.is_rational]
     return sp.factor(value, extension=roots) if roots else sp.factor(value)
 
@@ -217,7 +222,7 @@ def _is_square(value: sp.Expr) -> bool:
 def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _Amplitude) -> Binding:
     sigma = sign_of(angle)
     turned = (amplitude.cos_unit, amplitude.sin_unit) != (1, 0)
-    words = ("one_less_cos", "one_plus_cos", "sine_square", "both", "sum")
+    words = ("one_less_cos", "one_plus_cos", "sine_square", "sum_of_cos", "divisor_of_cos")
     less_cos, plus_cos, square, twice, divisor = (real(f"{word}_{angle.name}") for word in words)
     cos_name = real(f"cos_swing_{angle.name}") if turned else cosine(angle)
     sin_name = real(f"sin_swing_{angle.name}") if turned else sine(angle)
@@ -229,18 +234,18 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
     statements: list[Statement] = [
         *amplitude.naming.lets,
         *amplitude.guard,
-        Let(less_cos, less, f"{angle.name}: law of cosines in the {equation.label} equation: 1 - cosine, times a scale"),
+        Let(less_cos, less, f"law of cosines for {angle.name}: {equation.label}: 1 - cosine, times a scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
-        Let(twice, less_cos + plus_cos, "twice the scale, with the rounding of its parts"),
+        Let(twice, less_cos + plus_cos, "twice the scale, as the sum of both: then cosine and sine agree"),
         Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
         Let(cos_name, (plus_cos - less_cos) / divisor),
         Require(sp.Le(sp.Abs(cos_name), 1 + BOUNDARY / 2), Status.UNREACHABLE, reason=out_of_reach(angle, told, known)),
-        Let(square, less_cos * plus_cos, "the square of sine times scale"),
+        Let(square, less_cos * plus_cos, "sine squared, times the squared scale"),
         Let(sin_name, 2 * sigma * Root(square) / size(divisor)),
     ]
     if turned:
         statements += [
-            Let(cosine(angle), amplitude.cos_unit * cos_name - amplitude.sin_unit * sin_name),
+            Let(cosine(angle), amplitude.cos_unit * cos_name - amplitude.sin_unit * sin_name, _ADDITION),
             Let(sine(angle), amplitude.sin_unit * cos_name + amplitude.cos_unit * sin_name),
         ]
     slope = Slope(angle, amplitude.slope, amplitude.slope_scale, (length, right))
@@ -248,12 +253,12 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
 
 
 def _product(value: sp.Expr) -> sp.Expr:
-    """Factored: it reads as lengths compared."""
+    """The value in factors, which read as comparisons of lengths."""
     return _positive(sp.factor(value))
 
 
 def _positive(factored: sp.Expr) -> sp.Expr:
-    """Factors with a leading minus inside the one that has most of them."""
+    """A leading minus goes into the factor with the most minus signs."""
     factors = list(sp.Mul.make_args(factored))
     sums = [f for f in factors if f.is_Add]
     if -1 not in factors or not sums:

@@ -14,7 +14,7 @@ from softkin._types import Diagnosis, Rotation, Status
 def made_rotation(rotation: Rotation) -> Rotation | Diagnosis:
     """The rotation as it is used, or why it is none."""
     (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
-    # numbers of reasonable size
+    # inputs must be numbers, and of reasonable size
     if not (
         -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
         and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
@@ -57,7 +57,7 @@ def made_rotation(rotation: Rotation) -> Rotation | Diagnosis:
         made_r32 = r32
         made_r33 = r33
     else:
-        length_z = sqrt(r13*r13 + r23*r23 + r33*r33)  # the direction of the tool is kept
+        length_z = sqrt(r13*r13 + r23*r23 + r33*r33)  # z keeps its direction, which is that of the tool
         divisor_z = length_z if length_z > 0.5 else 1.0
         unit_z1 = r13/divisor_z
         unit_z2 = r23/divisor_z
@@ -66,7 +66,7 @@ def made_rotation(rotation: Rotation) -> Rotation | Diagnosis:
         across_z1 = r11 - along_z*unit_z1
         across_z2 = r21 - along_z*unit_z2
         across_z3 = r31 - along_z*unit_z3
-        # x is made perpendicular to it
+        # x is made perpendicular to z
         length_x = sqrt(across_z1*across_z1 + across_z2*across_z2 + across_z3*across_z3)
         divisor_x = length_x if length_x > 0.5 else 1.0
         made_r11 = across_z1/divisor_x

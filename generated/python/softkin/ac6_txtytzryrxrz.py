@@ -331,7 +331,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
             raise self._refusal("upper_a6: A6: upper limit of the axis, both 0: no limit", upper_a6=upper_a6)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
@@ -339,7 +339,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
@@ -347,7 +347,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
@@ -355,38 +355,38 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: no limit
+        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: whether it has no limits
         effective_lower_a4 = lower_a4
         effective_upper_a4 = upper_a4
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
         lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
         highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
             raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
-        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: no limit
+        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: whether it has no limits
         effective_lower_a5 = lower_a5
         effective_upper_a5 = upper_a5
         tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
         lowest_a5 = -1e12 if unlimited_a5 else effective_lower_a5 - tolerance_a5
         highest_a5 = 1e12 if unlimited_a5 else effective_upper_a5 + tolerance_a5
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a5 = (not unlimited_a5) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
         mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
         if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
             raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
-        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: no limit
+        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: whether it has no limits
         effective_lower_a6 = lower_a6
         effective_upper_a6 = upper_a6
         tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
         lowest_a6 = -1e12 if unlimited_a6 else effective_lower_a6 - tolerance_a6
         highest_a6 = 1e12 if unlimited_a6 else effective_upper_a6 + tolerance_a6
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a6 = (not unlimited_a6) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         return Constants(
             flange_x=flange_x, flange_y=flange_y, flange_z=flange_z, offset_a1=offset_a1, offset_a2=offset_a2,
             offset_a3=offset_a3, offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6,
@@ -415,7 +415,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -459,7 +459,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -511,20 +511,21 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a4 <= 1e9
             and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
+        # wrist centre: the point in which the last axes intersect
+        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # polar coordinates: the radius at angle a4
+        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
         if radius_a4 > 1e-11:
             direction_x_a4 = sigma_wrist*r33
             direction_y_a4 = sigma_wrist*r13
@@ -532,22 +533,22 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             direction_x_a4 = cos(free_a4)
             direction_y_a4 = sin(free_a4)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4 + 0.0)/DEGREE  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4 + 0.0)/DEGREE  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         a4_radius_of_a5 = sigma_wrist*radius_a4
-        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
         near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + arctan2(-r23, a4_radius_of_a5 + 0.0)/DEGREE  # A5: its turn
+        axis_a5 = offset_a5 + arctan2(-r23, a4_radius_of_a5 + 0.0)/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
         direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
-        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
         near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0)/DEGREE  # A6: its turn
+        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0)/DEGREE  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -629,7 +630,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
         offset_a5 = k.offset_a5
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -652,7 +653,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9

@@ -136,16 +136,16 @@ class CAxis(OrientationKinematics, TwistChoice):
             raise self._refusal("upper_c: C: upper limit of the axis, both 0: no limit", upper_c=upper_c)
         if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
             raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
-        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: no limit
+        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: whether it has no limits
         effective_lower_c = lower_c
         effective_upper_c = upper_c
         tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
         lowest_c = -1e12 if unlimited_c else effective_lower_c - tolerance_c
         highest_c = 1e12 if unlimited_c else effective_upper_c + tolerance_c
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_c = (not unlimited_c) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         return Constants(
             offset_c=offset_c, check_limits=check_limits, lower_c=effective_lower_c, upper_c=effective_upper_c,
             unlimited_c=unlimited_c, lowest_c=lowest_c, highest_c=highest_c, single_c=single_c, mid_c=mid_c,
@@ -157,7 +157,7 @@ class CAxis(OrientationKinematics, TwistChoice):
         (axis_c,) = axes
         k = self._constants
         offset_c = k.offset_c
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         c = DEGREE*(axis_c - offset_c)
@@ -170,7 +170,7 @@ class CAxis(OrientationKinematics, TwistChoice):
         (axis_c,) = axes
         k = self._constants
         offset_c = k.offset_c
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         c = DEGREE*(axis_c - offset_c)
@@ -189,18 +189,19 @@ class CAxis(OrientationKinematics, TwistChoice):
         mid_c = k.mid_c
         offset_c = k.offset_c
         single_c = k.single_c
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_c <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
-        open_c = mid_c if single_c else ref_c  # C: where its turn is open
+        open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
         near_c = 360.0*(turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
-        axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         return (axis_c,)
@@ -227,7 +228,7 @@ class CAxis(OrientationKinematics, TwistChoice):
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         (axis_c,) = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         return ()
@@ -235,7 +236,7 @@ class CAxis(OrientationKinematics, TwistChoice):
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         (axis_c,) = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         return ((1.0,),)
@@ -247,7 +248,7 @@ class CAxis(OrientationKinematics, TwistChoice):
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         (axis_c,) = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         return ((0.0,), (0.0,), (0.0,), (0.0,), (0.0,), (1.0,))
@@ -264,7 +265,7 @@ class CAxis(OrientationKinematics, TwistChoice):
         """The orientations on a flange, and how far the two axes are apart."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
             return Status.BAD_INPUT
         return (
@@ -277,7 +278,8 @@ class CAxis(OrientationKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way

@@ -168,18 +168,18 @@ class CAxisTool(OrientationKinematics, TwistChoice):
             raise self._refusal("upper_c: C: upper limit of the axis, both 0: no limit", upper_c=upper_c)
         if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
             raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
-        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: no limit
+        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: whether it has no limits
         effective_lower_c = lower_c
         effective_upper_c = upper_c
         tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
         lowest_c = -1e12 if unlimited_c else effective_lower_c - tolerance_c
         highest_c = 1e12 if unlimited_c else effective_upper_c + tolerance_c
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_c = (not unlimited_c) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
-        machine_scale = 1.0  # a length of the machine
-        unnoticed_shift = 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)  # as much may turn with the flange
-        unmet_offset = sqrt(tool_x*tool_x + tool_y*tool_y)  # turns in a way that nothing commands
+        machine_scale = 1.0  # characteristic length of the machine
+        unnoticed_shift = 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)  # offsets up to this are not noticed
+        unmet_offset = sqrt(tool_x*tool_x + tool_y*tool_y)  # part of the tool in directions that are not commanded
         return Constants(
             tool_x=tool_x, tool_y=tool_y, tool_z=tool_z, offset_c=offset_c, check_limits=check_limits,
             lower_c=effective_lower_c, upper_c=effective_upper_c, unlimited_c=unlimited_c, lowest_c=lowest_c,
@@ -195,7 +195,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         tool_x = k.tool_x
         tool_y = k.tool_y
         tool_z = k.tool_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         c = DEGREE*(axis_c - offset_c)
@@ -210,7 +210,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         (axis_c,) = axes
         k = self._constants
         offset_c = k.offset_c
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         c = DEGREE*(axis_c - offset_c)
@@ -229,18 +229,19 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         mid_c = k.mid_c
         offset_c = k.offset_c
         single_c = k.single_c
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_c <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
-        open_c = mid_c if single_c else ref_c  # C: where its turn is open
+        open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
         near_c = 360.0*(turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
-        axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         return (axis_c,)
@@ -267,7 +268,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         (axis_c,) = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         return ()
@@ -275,7 +276,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         (axis_c,) = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         return ((1.0,),)
@@ -291,7 +292,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         offset_c = k.offset_c
         tool_x = k.tool_x
         tool_y = k.tool_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         c = DEGREE*(axis_c - offset_c)
@@ -306,12 +307,12 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         tool_z = k.tool_z
         unmet_offset = k.unmet_offset
         unnoticed_shift = k.unnoticed_shift
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
             return Status.BAD_INPUT
-        flange_along = flange_axis_z*tool_z  # what the flange holds, along the axis that it turns about
+        flange_along = flange_axis_z*tool_z  # the flange's part along the axis about which the flange turns
         part_of_flange_offset = tool_z - flange_along*flange_axis_z
-        # off the axis that the flange turns about
+        # distance of the flange's part from the axis about which the flange turns
         flange_offset = root(
             part_of_flange_offset*part_of_flange_offset
             + flange_along*flange_along*(flange_axis_x*flange_axis_x + flange_axis_y*flange_axis_y)
@@ -327,20 +328,20 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self._constants
         tool_z = k.tool_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
             and -1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9
         ):
             return Status.BAD_INPUT
-        flange_along = flange_axis_z*tool_z  # what the flange holds, along the axis that it turns about
+        flange_along = flange_axis_z*tool_z  # the flange's part along the axis about which the flange turns
         return (base_axis_x*flange_along, base_axis_y*flange_along, base_axis_z*flange_along)
 
     def _total_image(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> TotalImage | Status:
         """The orientations on a flange, and how far the two axes are apart."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
             return Status.BAD_INPUT
         return (
@@ -353,7 +354,8 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way

@@ -226,7 +226,7 @@ class Crane(OffsetKinematics):
             )
         if not ((lower_r < upper_r) or (abs(lower_r) + abs(upper_r) <= 0.0)):
             raise self._refusal("lower_r below upper_r, or both 0", lower_r=lower_r, upper_r=upper_r)
-        unlimited_r = False  # r: no limit
+        unlimited_r = False  # r: whether it has no limits
         effective_lower_r = lower_r if abs(lower_r) + abs(upper_r) > 0.0 else offset_r
         effective_upper_r = upper_r if abs(lower_r) + abs(upper_r) > 0.0 else 1e9 + offset_r
         tolerance_r = 1e-9 + 1e-9*abs(effective_lower_r) + 1e-9*abs(effective_upper_r)
@@ -236,26 +236,26 @@ class Crane(OffsetKinematics):
             raise self._refusal(
                 "lower_theta below upper_theta, or both 0", lower_theta=lower_theta, upper_theta=upper_theta,
             )
-        unlimited_theta = abs(lower_theta) + abs(upper_theta) <= 0.0  # theta: no limit
+        unlimited_theta = abs(lower_theta) + abs(upper_theta) <= 0.0  # theta: whether it has no limits
         effective_lower_theta = lower_theta
         effective_upper_theta = upper_theta
         tolerance_theta = 1e-9 + 1e-9*abs(effective_lower_theta) + 1e-9*abs(effective_upper_theta)
         lowest_theta = -1e12 if unlimited_theta else effective_lower_theta - tolerance_theta
         highest_theta = 1e12 if unlimited_theta else effective_upper_theta + tolerance_theta
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_theta = (
             (not unlimited_theta) and (effective_upper_theta - effective_lower_theta <= 350.0 + tolerance_theta)
         )
         mid_theta = 0.5*effective_lower_theta + 0.5*effective_upper_theta
         if not ((lower_phi < upper_phi) or (abs(lower_phi) + abs(upper_phi) <= 0.0)):
             raise self._refusal("lower_phi below upper_phi, or both 0", lower_phi=lower_phi, upper_phi=upper_phi)
-        unlimited_phi = False  # phi: no limit
+        unlimited_phi = False  # phi: whether it has no limits
         effective_lower_phi = lower_phi if abs(lower_phi) + abs(upper_phi) > 0.0 else offset_phi
         effective_upper_phi = upper_phi if abs(lower_phi) + abs(upper_phi) > 0.0 else 180.0 + offset_phi
         tolerance_phi = 1e-9 + 1e-9*abs(effective_lower_phi) + 1e-9*abs(effective_upper_phi)
         lowest_phi = -1e12 if unlimited_phi else effective_lower_phi - tolerance_phi
         highest_phi = 1e12 if unlimited_phi else effective_upper_phi + tolerance_phi
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         machine_scale_times_free_angle = 1e-11*machine_scale
         return Constants(
             offset_r=offset_r, offset_theta=offset_theta, offset_phi=offset_phi, check_limits=check_limits,
@@ -275,7 +275,7 @@ class Crane(OffsetKinematics):
         offset_phi = k.offset_phi
         offset_r = k.offset_r
         offset_theta = k.offset_theta
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
         r = axis_r - offset_r
@@ -291,11 +291,11 @@ class Crane(OffsetKinematics):
         phi = DEGREE*axis_phi_minus_offset_phi
         sin_phi = sin(phi)
         r_times_sin_phi = r*sin_phi
-        x = r_times_sin_phi*cos_theta  # x: affine in the x equation
+        x = r_times_sin_phi*cos_theta  # x from the x equation, which is linear in it
         sin_theta = sin(theta)
-        y = r_times_sin_phi*sin_theta  # y: affine in the y equation
+        y = r_times_sin_phi*sin_theta  # y from the y equation, which is linear in it
         cos_phi = cos(phi)
-        z = r*cos_phi  # z: affine in the z equation
+        z = r*cos_phi  # z from the z equation, which is linear in it
         return ((x, y, z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ())
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
@@ -304,7 +304,7 @@ class Crane(OffsetKinematics):
         k = self._constants
         offset_phi = k.offset_phi
         offset_r = k.offset_r
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
         axis_r_minus_offset_r = axis_r - offset_r
@@ -331,16 +331,16 @@ class Crane(OffsetKinematics):
         offset_r = k.offset_r
         offset_theta = k.offset_theta
         single_theta = k.single_theta
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_phi <= 1e9
             and -1e9 <= ref_theta <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
         axis_r = offset_r + radius_phi
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
             direction_y_theta = y
@@ -348,12 +348,14 @@ class Crane(OffsetKinematics):
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        open_theta = mid_theta if single_theta else ref_theta  # Theta: where its turn is open
+        # Theta: without a commanded turn, the value nearest to this
+        open_theta = mid_theta if single_theta else ref_theta
         near_theta = 360.0*(turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
-        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
+        # Theta: whole turns added
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
             direction_y_phi = radius_theta
@@ -414,7 +416,7 @@ class Crane(OffsetKinematics):
         offset_phi = k.offset_phi
         offset_r = k.offset_r
         offset_theta = k.offset_theta
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
         r = axis_r - offset_r
@@ -428,17 +430,17 @@ class Crane(OffsetKinematics):
         phi = DEGREE*axis_phi_minus_offset_phi
         sin_phi = sin(phi)
         cos_phi = cos(phi)
-        z = r*cos_phi  # z: affine in the z equation
+        z = r*cos_phi  # z from the z equation, which is linear in it
         theta = DEGREE*(axis_theta - offset_theta)
         cos_theta = cos(theta)
         r_times_sin_phi = r*sin_phi
-        x = r_times_sin_phi*cos_theta  # x: affine in the x equation
+        x = r_times_sin_phi*cos_theta  # x from the x equation, which is linear in it
         sin_theta = sin(theta)
-        y = r_times_sin_phi*sin_theta  # y: affine in the y equation
-        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        y = r_times_sin_phi*sin_theta  # y from the y equation, which is linear in it
+        radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
         length_free_phi = radius_phi/machine_scale
-        margin_free_phi = 1.0 if length_free_phi > 1e-11 else 0.0  # 1, and 0 where nothing determines the axis
+        margin_free_phi = 1.0 if length_free_phi > 1e-11 else 0.0  # 0 where nothing determines the axis, else 1 or -1
         return (sin_phi, margin_free_phi)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -448,7 +450,7 @@ class Crane(OffsetKinematics):
         offset_phi = k.offset_phi
         offset_r = k.offset_r
         offset_theta = k.offset_theta
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
         r = axis_r - offset_r
@@ -492,20 +494,20 @@ class Crane(OffsetKinematics):
         offset_r = k.offset_r
         offset_theta = k.offset_theta
         single_theta = k.single_theta
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_phi <= 1e9
             and -1e9 <= ref_theta <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        flange_z = z - point_z  # the flange behind the point
-        flange_x = x - point_x  # the flange behind the point
-        flange_y = y - point_y  # the flange behind the point
-        radius_theta = sqrt(flange_x*flange_x + flange_y*flange_y)  # theta: direction and distance of a point
-        radius_phi = sqrt(flange_z*flange_z + radius_theta*radius_theta)  # phi: direction and distance of a point
+        flange_z = z - point_z  # position of the flange: the point less its offset
+        flange_x = x - point_x  # position of the flange: the point less its offset
+        flange_y = y - point_y  # position of the flange: the point less its offset
+        radius_theta = sqrt(flange_x*flange_x + flange_y*flange_y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(flange_z*flange_z + radius_theta*radius_theta)  # polar coordinates: the radius at angle phi
         axis_r = offset_r + radius_phi
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = flange_x
             direction_y_theta = flange_y
@@ -513,12 +515,14 @@ class Crane(OffsetKinematics):
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        open_theta = mid_theta if single_theta else ref_theta  # Theta: where its turn is open
+        # Theta: without a commanded turn, the value nearest to this
+        open_theta = mid_theta if single_theta else ref_theta
         near_theta = 360.0*(turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
-        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
+        # Theta: whole turns added
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = flange_z
             direction_y_phi = radius_theta
@@ -536,7 +540,7 @@ class Crane(OffsetKinematics):
         k = self._constants
         offset_phi = k.offset_phi
         offset_r = k.offset_r
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
         axis_r_minus_offset_r = axis_r - offset_r

@@ -162,7 +162,7 @@ class Gantry2(OffsetKinematics):
             raise self._refusal("upper_y: Y: upper limit of the axis, both 0: no limit", upper_y=upper_y)
         if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
             raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: no limit
+        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: whether it has no limits
         effective_lower_x = lower_x
         effective_upper_x = upper_x
         tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
@@ -170,13 +170,13 @@ class Gantry2(OffsetKinematics):
         highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
         if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
             raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: no limit
+        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: whether it has no limits
         effective_lower_y = lower_y
         effective_upper_y = upper_y
         tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
         lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
         highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         machine_scale_times_plane = 1e-6*machine_scale
         return Constants(
             offset_x=offset_x, offset_y=offset_y, check_limits=check_limits, lower_x=effective_lower_x,
@@ -191,7 +191,7 @@ class Gantry2(OffsetKinematics):
         k = self._constants
         offset_x = k.offset_x
         offset_y = k.offset_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
             return Status.BAD_INPUT
         joint_x = axis_x - offset_x
@@ -201,7 +201,7 @@ class Gantry2(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_x, axis_y = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -215,7 +215,7 @@ class Gantry2(OffsetKinematics):
         machine_scale_times_plane = k.machine_scale_times_plane
         offset_x = k.offset_x
         offset_y = k.offset_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -253,7 +253,7 @@ class Gantry2(OffsetKinematics):
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_x, axis_y = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
             return Status.BAD_INPUT
         return ()
@@ -261,7 +261,7 @@ class Gantry2(OffsetKinematics):
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_x, axis_y = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0), (0.0, 1.0))
@@ -280,7 +280,7 @@ class Gantry2(OffsetKinematics):
         machine_scale_times_plane = k.machine_scale_times_plane
         offset_x = k.offset_x
         offset_y = k.offset_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
@@ -290,16 +290,16 @@ class Gantry2(OffsetKinematics):
         if not (abs(point_z - z) <= machine_scale_times_plane):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        joint_x = x - point_x  # joint_x: affine in the x equation
+        joint_x = x - point_x  # joint_x from the x equation, which is linear in it
         axis_x = joint_x + offset_x
-        joint_y = y - point_y  # joint_y: affine in the y equation
+        joint_y = y - point_y  # joint_y from the y equation, which is linear in it
         axis_y = joint_y + offset_y
         return (axis_x, axis_y)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_x, axis_y = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
             return Status.BAD_INPUT
         return ()

@@ -195,7 +195,7 @@ class Gantry3(OffsetKinematics):
             raise self._refusal("upper_z: Z: upper limit of the axis, both 0: no limit", upper_z=upper_z)
         if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
             raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: no limit
+        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: whether it has no limits
         effective_lower_x = lower_x
         effective_upper_x = upper_x
         tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
@@ -203,7 +203,7 @@ class Gantry3(OffsetKinematics):
         highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
         if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
             raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: no limit
+        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: whether it has no limits
         effective_lower_y = lower_y
         effective_upper_y = upper_y
         tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
@@ -211,13 +211,13 @@ class Gantry3(OffsetKinematics):
         highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
         if not ((lower_z < upper_z) or (abs(lower_z) + abs(upper_z) <= 0.0)):
             raise self._refusal("lower_z below upper_z, or both 0", lower_z=lower_z, upper_z=upper_z)
-        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: no limit
+        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: whether it has no limits
         effective_lower_z = lower_z
         effective_upper_z = upper_z
         tolerance_z = 1e-9 + 1e-9*abs(effective_lower_z) + 1e-9*abs(effective_upper_z)
         lowest_z = -1e12 if unlimited_z else effective_lower_z - tolerance_z
         highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         return Constants(
             offset_x=offset_x, offset_y=offset_y, offset_z=offset_z, check_limits=check_limits,
             lower_x=effective_lower_x, upper_x=effective_upper_x, unlimited_x=unlimited_x, lowest_x=lowest_x,
@@ -233,7 +233,7 @@ class Gantry3(OffsetKinematics):
         offset_x = k.offset_x
         offset_y = k.offset_y
         offset_z = k.offset_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         joint_x = axis_x - offset_x
@@ -244,7 +244,7 @@ class Gantry3(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_x, axis_y, axis_z = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -258,7 +258,7 @@ class Gantry3(OffsetKinematics):
         offset_x = k.offset_x
         offset_y = k.offset_y
         offset_z = k.offset_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         axis_x = offset_x + x
@@ -302,7 +302,7 @@ class Gantry3(OffsetKinematics):
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_x, axis_y, axis_z = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ()
@@ -310,7 +310,7 @@ class Gantry3(OffsetKinematics):
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_x, axis_y, axis_z = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -329,24 +329,24 @@ class Gantry3(OffsetKinematics):
         offset_x = k.offset_x
         offset_y = k.offset_y
         offset_z = k.offset_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        joint_x = x - point_x  # joint_x: affine in the x equation
+        joint_x = x - point_x  # joint_x from the x equation, which is linear in it
         axis_x = joint_x + offset_x
-        joint_y = y - point_y  # joint_y: affine in the y equation
+        joint_y = y - point_y  # joint_y from the y equation, which is linear in it
         axis_y = joint_y + offset_y
-        joint_z = z - point_z  # joint_z: affine in the z equation
+        joint_z = z - point_z  # joint_z from the z equation, which is linear in it
         axis_z = joint_z + offset_z
         return (axis_x, axis_y, axis_z)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_x, axis_y, axis_z = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ()

@@ -21,7 +21,7 @@ Singularities:
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 4280 additions, 5562 multiplications, 600 divisions, 140 square roots, 120 sines
     inverse: 256 additions, 348 multiplications, 30 divisions, 10 square roots, 2 sines
-    Newton's method: every pass improves the pose until the rods fit: at most 20 passes, all of which are counted
+    Newton's method: every pass improves the pose until all legs have their lengths: at most 20 passes, all of which are counted
 
 Six lengths allow up to 40 poses. Forward kinematics finds the one in the assembly mode of the home pose, by
 Newton's method from there; it refuses where that does not converge in 20 passes. On six machines of different
@@ -886,7 +886,7 @@ class Hexapod(IterativeForward):
             )
         if not ((lower_l1 < upper_l1) or (abs(lower_l1) + abs(upper_l1) <= 0.0)):
             raise self._refusal("lower_l1 below upper_l1, or both 0", lower_l1=lower_l1, upper_l1=upper_l1)
-        unlimited_l1 = False  # l1: no limit
+        unlimited_l1 = False  # l1: whether it has no limits
         effective_lower_l1 = lower_l1 if abs(lower_l1) + abs(upper_l1) > 0.0 else offset_l1
         effective_upper_l1 = upper_l1 if abs(lower_l1) + abs(upper_l1) > 0.0 else 1e9 + offset_l1
         tolerance_l1 = 1e-9 + 1e-9*abs(effective_lower_l1) + 1e-9*abs(effective_upper_l1)
@@ -894,7 +894,7 @@ class Hexapod(IterativeForward):
         highest_l1 = 1e12 if unlimited_l1 else effective_upper_l1 + tolerance_l1
         if not ((lower_l2 < upper_l2) or (abs(lower_l2) + abs(upper_l2) <= 0.0)):
             raise self._refusal("lower_l2 below upper_l2, or both 0", lower_l2=lower_l2, upper_l2=upper_l2)
-        unlimited_l2 = False  # l2: no limit
+        unlimited_l2 = False  # l2: whether it has no limits
         effective_lower_l2 = lower_l2 if abs(lower_l2) + abs(upper_l2) > 0.0 else offset_l2
         effective_upper_l2 = upper_l2 if abs(lower_l2) + abs(upper_l2) > 0.0 else 1e9 + offset_l2
         tolerance_l2 = 1e-9 + 1e-9*abs(effective_lower_l2) + 1e-9*abs(effective_upper_l2)
@@ -902,7 +902,7 @@ class Hexapod(IterativeForward):
         highest_l2 = 1e12 if unlimited_l2 else effective_upper_l2 + tolerance_l2
         if not ((lower_l3 < upper_l3) or (abs(lower_l3) + abs(upper_l3) <= 0.0)):
             raise self._refusal("lower_l3 below upper_l3, or both 0", lower_l3=lower_l3, upper_l3=upper_l3)
-        unlimited_l3 = False  # l3: no limit
+        unlimited_l3 = False  # l3: whether it has no limits
         effective_lower_l3 = lower_l3 if abs(lower_l3) + abs(upper_l3) > 0.0 else offset_l3
         effective_upper_l3 = upper_l3 if abs(lower_l3) + abs(upper_l3) > 0.0 else 1e9 + offset_l3
         tolerance_l3 = 1e-9 + 1e-9*abs(effective_lower_l3) + 1e-9*abs(effective_upper_l3)
@@ -910,7 +910,7 @@ class Hexapod(IterativeForward):
         highest_l3 = 1e12 if unlimited_l3 else effective_upper_l3 + tolerance_l3
         if not ((lower_l4 < upper_l4) or (abs(lower_l4) + abs(upper_l4) <= 0.0)):
             raise self._refusal("lower_l4 below upper_l4, or both 0", lower_l4=lower_l4, upper_l4=upper_l4)
-        unlimited_l4 = False  # l4: no limit
+        unlimited_l4 = False  # l4: whether it has no limits
         effective_lower_l4 = lower_l4 if abs(lower_l4) + abs(upper_l4) > 0.0 else offset_l4
         effective_upper_l4 = upper_l4 if abs(lower_l4) + abs(upper_l4) > 0.0 else 1e9 + offset_l4
         tolerance_l4 = 1e-9 + 1e-9*abs(effective_lower_l4) + 1e-9*abs(effective_upper_l4)
@@ -918,7 +918,7 @@ class Hexapod(IterativeForward):
         highest_l4 = 1e12 if unlimited_l4 else effective_upper_l4 + tolerance_l4
         if not ((lower_l5 < upper_l5) or (abs(lower_l5) + abs(upper_l5) <= 0.0)):
             raise self._refusal("lower_l5 below upper_l5, or both 0", lower_l5=lower_l5, upper_l5=upper_l5)
-        unlimited_l5 = False  # l5: no limit
+        unlimited_l5 = False  # l5: whether it has no limits
         effective_lower_l5 = lower_l5 if abs(lower_l5) + abs(upper_l5) > 0.0 else offset_l5
         effective_upper_l5 = upper_l5 if abs(lower_l5) + abs(upper_l5) > 0.0 else 1e9 + offset_l5
         tolerance_l5 = 1e-9 + 1e-9*abs(effective_lower_l5) + 1e-9*abs(effective_upper_l5)
@@ -926,7 +926,7 @@ class Hexapod(IterativeForward):
         highest_l5 = 1e12 if unlimited_l5 else effective_upper_l5 + tolerance_l5
         if not ((lower_l6 < upper_l6) or (abs(lower_l6) + abs(upper_l6) <= 0.0)):
             raise self._refusal("lower_l6 below upper_l6, or both 0", lower_l6=lower_l6, upper_l6=upper_l6)
-        unlimited_l6 = False  # l6: no limit
+        unlimited_l6 = False  # l6: whether it has no limits
         effective_lower_l6 = lower_l6 if abs(lower_l6) + abs(upper_l6) > 0.0 else offset_l6
         effective_upper_l6 = upper_l6 if abs(lower_l6) + abs(upper_l6) > 0.0 else 1e9 + offset_l6
         tolerance_l6 = 1e-9 + 1e-9*abs(effective_lower_l6) + 1e-9*abs(effective_upper_l6)
@@ -980,7 +980,7 @@ class Hexapod(IterativeForward):
             platform_1_z/6.0 + platform_2_z/6.0 + platform_3_z/6.0 + platform_4_z/6.0 + platform_5_z/6.0
             + platform_6_z/6.0
         )
-        # their mean distance from it
+        # root mean square of their distances from it
         spread = root(
             (platform_1_x - centre_x)*(platform_1_x - centre_x)/6.0
             + (platform_2_x - centre_x)*(platform_2_x - centre_x)/6.0
@@ -1002,22 +1002,28 @@ class Hexapod(IterativeForward):
             + (platform_6_z - centre_z)*(platform_6_z - centre_z)/6.0
         )
         platform_radius = spread if spread > 0.0 else 1.0
-        span_1_x = home_arm_1_x + home_x - base_1_x  # leg 1: from its joint on the base to its joint on the platform
+        # leg 1: vector from its joint on the base to its joint on the platform
+        span_1_x = home_arm_1_x + home_x - base_1_x
         span_1_y = home_arm_1_y + home_y - base_1_y
         span_1_z = home_arm_1_z + home_z - base_1_z
-        span_2_x = home_arm_2_x + home_x - base_2_x  # leg 2: from its joint on the base to its joint on the platform
+        # leg 2: vector from its joint on the base to its joint on the platform
+        span_2_x = home_arm_2_x + home_x - base_2_x
         span_2_y = home_arm_2_y + home_y - base_2_y
         span_2_z = home_arm_2_z + home_z - base_2_z
-        span_3_x = home_arm_3_x + home_x - base_3_x  # leg 3: from its joint on the base to its joint on the platform
+        # leg 3: vector from its joint on the base to its joint on the platform
+        span_3_x = home_arm_3_x + home_x - base_3_x
         span_3_y = home_arm_3_y + home_y - base_3_y
         span_3_z = home_arm_3_z + home_z - base_3_z
-        span_4_x = home_arm_4_x + home_x - base_4_x  # leg 4: from its joint on the base to its joint on the platform
+        # leg 4: vector from its joint on the base to its joint on the platform
+        span_4_x = home_arm_4_x + home_x - base_4_x
         span_4_y = home_arm_4_y + home_y - base_4_y
         span_4_z = home_arm_4_z + home_z - base_4_z
-        span_5_x = home_arm_5_x + home_x - base_5_x  # leg 5: from its joint on the base to its joint on the platform
+        # leg 5: vector from its joint on the base to its joint on the platform
+        span_5_x = home_arm_5_x + home_x - base_5_x
         span_5_y = home_arm_5_y + home_y - base_5_y
         span_5_z = home_arm_5_z + home_z - base_5_z
-        span_6_x = home_arm_6_x + home_x - base_6_x  # leg 6: from its joint on the base to its joint on the platform
+        # leg 6: vector from its joint on the base to its joint on the platform
+        span_6_x = home_arm_6_x + home_x - base_6_x
         span_6_y = home_arm_6_y + home_y - base_6_y
         span_6_z = home_arm_6_z + home_z - base_6_z
         length_1 = sqrt(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
@@ -1026,7 +1032,7 @@ class Hexapod(IterativeForward):
         length_4 = sqrt(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
         length_5 = sqrt(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
         length_6 = sqrt(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
-        # a length of the machine: the mean leg and the platform
+        # characteristic length: mean leg, radius of the platform
         machine_scale = (
             length_1/6.0 + length_2/6.0 + length_3/6.0 + length_4/6.0 + length_5/6.0 + length_6/6.0 + platform_radius
         )
@@ -1036,7 +1042,7 @@ class Hexapod(IterativeForward):
             and spread > 1e-9*machine_scale
         ):
             raise self._refusal("legs that have a length at the home pose, and joints that are apart")
-        # leg 1: its direction, and the moment of that about the platform's origin
+        # leg 1 as a line: unit vector, and its moment about the platform's origin
         divisor_1 = length_1 if length_1 > 1e-9*machine_scale else 1.0
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
@@ -1044,7 +1050,7 @@ class Hexapod(IterativeForward):
         moment_1_x = (along_1_z*home_arm_1_y - along_1_y*home_arm_1_z)/platform_radius
         moment_1_y = (along_1_x*home_arm_1_z - along_1_z*home_arm_1_x)/platform_radius
         moment_1_z = (along_1_y*home_arm_1_x - along_1_x*home_arm_1_y)/platform_radius
-        # leg 2: its direction, and the moment of that about the platform's origin
+        # leg 2 as a line: unit vector, and its moment about the platform's origin
         divisor_2 = length_2 if length_2 > 1e-9*machine_scale else 1.0
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
@@ -1052,7 +1058,7 @@ class Hexapod(IterativeForward):
         moment_2_x = (along_2_z*home_arm_2_y - along_2_y*home_arm_2_z)/platform_radius
         moment_2_y = (along_2_x*home_arm_2_z - along_2_z*home_arm_2_x)/platform_radius
         moment_2_z = (along_2_y*home_arm_2_x - along_2_x*home_arm_2_y)/platform_radius
-        # leg 3: its direction, and the moment of that about the platform's origin
+        # leg 3 as a line: unit vector, and its moment about the platform's origin
         divisor_3 = length_3 if length_3 > 1e-9*machine_scale else 1.0
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
@@ -1060,7 +1066,7 @@ class Hexapod(IterativeForward):
         moment_3_x = (along_3_z*home_arm_3_y - along_3_y*home_arm_3_z)/platform_radius
         moment_3_y = (along_3_x*home_arm_3_z - along_3_z*home_arm_3_x)/platform_radius
         moment_3_z = (along_3_y*home_arm_3_x - along_3_x*home_arm_3_y)/platform_radius
-        # leg 4: its direction, and the moment of that about the platform's origin
+        # leg 4 as a line: unit vector, and its moment about the platform's origin
         divisor_4 = length_4 if length_4 > 1e-9*machine_scale else 1.0
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
@@ -1068,7 +1074,7 @@ class Hexapod(IterativeForward):
         moment_4_x = (along_4_z*home_arm_4_y - along_4_y*home_arm_4_z)/platform_radius
         moment_4_y = (along_4_x*home_arm_4_z - along_4_z*home_arm_4_x)/platform_radius
         moment_4_z = (along_4_y*home_arm_4_x - along_4_x*home_arm_4_y)/platform_radius
-        # leg 5: its direction, and the moment of that about the platform's origin
+        # leg 5 as a line: unit vector, and its moment about the platform's origin
         divisor_5 = length_5 if length_5 > 1e-9*machine_scale else 1.0
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
@@ -1076,7 +1082,7 @@ class Hexapod(IterativeForward):
         moment_5_x = (along_5_z*home_arm_5_y - along_5_y*home_arm_5_z)/platform_radius
         moment_5_y = (along_5_x*home_arm_5_z - along_5_z*home_arm_5_x)/platform_radius
         moment_5_z = (along_5_y*home_arm_5_x - along_5_x*home_arm_5_y)/platform_radius
-        # leg 6: its direction, and the moment of that about the platform's origin
+        # leg 6 as a line: unit vector, and its moment about the platform's origin
         divisor_6 = length_6 if length_6 > 1e-9*machine_scale else 1.0
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
@@ -1102,7 +1108,7 @@ class Hexapod(IterativeForward):
         plate_axis_6_x = along_6_x*home_r11 + along_6_y*home_r21 + along_6_z*home_r31
         plate_axis_6_y = along_6_x*home_r12 + along_6_y*home_r22 + along_6_z*home_r32
         plate_axis_6_z = along_6_x*home_r13 + along_6_y*home_r23 + along_6_z*home_r33
-        # the legs at the home pose: zero where they do not hold the platform
+        # determinant at the home pose: zero where the legs do not hold the platform
         (determinant,) = solve(
             (
                 (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
@@ -1117,7 +1123,7 @@ class Hexapod(IterativeForward):
         if not (abs(determinant) > 0.001):
             raise self._refusal("a home pose at which the legs hold the platform")
         assembly_sign = 1.0 if determinant > 0.0 else -1.0  # assembly mode of this machine
-        within = 1e-11*machine_scale  # lengths that agree to this are equal
+        within = 1e-11*machine_scale  # tolerance of the leg lengths
         # least cosine of a leg's lean on the base
         least_cos_base = (
             cos(DEGREE*max_angle_base_joint) - 1e-12
@@ -1230,7 +1236,7 @@ class Hexapod(IterativeForward):
         platform_6_y = k.platform_6_y
         platform_6_z = k.platform_6_z
         within = k.within
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_l1 <= 1e9 and -1e9 <= axis_l2 <= 1e9 and -1e9 <= axis_l3 <= 1e9 and -1e9 <= axis_l4 <= 1e9
             and -1e9 <= axis_l5 <= 1e9 and -1e9 <= axis_l6 <= 1e9
@@ -1245,7 +1251,7 @@ class Hexapod(IterativeForward):
         # the mirror that the machine does not have
         if not (l1 > 0.0 and l2 > 0.0 and l3 > 0.0 and l4 > 0.0 and l5 > 0.0 and l6 > 0.0):
             return Status.IMPOSSIBLE
-        # the joints of the platform, from its origin, as it is turned at the start
+        # joints of the platform, seen from its origin, in the orientation of the start
         start_arm_1_x = platform_1_x*start_r11 + platform_1_y*start_r12 + platform_1_z*start_r13
         start_arm_1_y = platform_1_x*start_r21 + platform_1_y*start_r22 + platform_1_z*start_r23
         start_arm_1_z = platform_1_x*start_r31 + platform_1_y*start_r32 + platform_1_z*start_r33
@@ -1264,12 +1270,12 @@ class Hexapod(IterativeForward):
         start_arm_6_x = platform_6_x*start_r11 + platform_6_y*start_r12 + platform_6_z*start_r13
         start_arm_6_y = platform_6_x*start_r21 + platform_6_y*start_r22 + platform_6_z*start_r23
         start_arm_6_z = platform_6_x*start_r31 + platform_6_y*start_r32 + platform_6_z*start_r33
-        # Newton's method: every pass improves the pose until the rods fit
+        # Newton's method: every pass improves the pose until all legs have their lengths
         x, y, z, roll, pitch, yaw, fitted = start_x, start_y, start_z, 0.0, 0.0, 0.0, False
         for _ in range(20):
             cos_pitch = cos(pitch)
             cos_yaw = cos(yaw)
-            turned_11 = cos_pitch*cos_yaw  # the turn away from the start: Rz(yaw) Ry(pitch) Rx(roll)
+            turned_11 = cos_pitch*cos_yaw  # rotation from the start: Rz(yaw) Ry(pitch) Rx(roll)
             cos_roll = cos(roll)
             sin_roll = sin(roll)
             sin_pitch = sin(pitch)
@@ -1281,7 +1287,7 @@ class Hexapod(IterativeForward):
             cos_roll_times_cos_yaw = cos_roll*cos_yaw
             turned_13 = sin_roll_times_sin_yaw + cos_roll_times_cos_yaw*sin_pitch
             arm_1_x = start_arm_1_x*turned_11 + start_arm_1_y*turned_12 + start_arm_1_z*turned_13
-            span_1_x = arm_1_x + x - base_1_x  # leg 1: from its joint on the base to its joint on the platform
+            span_1_x = arm_1_x + x - base_1_x  # leg 1: vector from its joint on the base to its joint on the platform
             turned_21 = cos_pitch*sin_yaw
             turned_22 = cos_roll_times_cos_yaw + sin_pitch*sin_roll_times_sin_yaw
             turned_23 = cos_roll_times_sin_yaw*sin_pitch - cos_yaw_times_sin_roll
@@ -1292,53 +1298,53 @@ class Hexapod(IterativeForward):
             arm_1_z = start_arm_1_y*turned_32 + start_arm_1_z*turned_33 - start_arm_1_x*sin_pitch
             span_1_z = arm_1_z + z - base_1_z
             length_1 = sqrt(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
-            error_1 = length_1 - l1  # by what leg 1 would be too long
+            error_1 = length_1 - l1  # length error of leg 1
             arm_2_x = start_arm_2_x*turned_11 + start_arm_2_y*turned_12 + start_arm_2_z*turned_13
-            span_2_x = arm_2_x + x - base_2_x  # leg 2: from its joint on the base to its joint on the platform
+            span_2_x = arm_2_x + x - base_2_x  # leg 2: vector from its joint on the base to its joint on the platform
             arm_2_y = start_arm_2_x*turned_21 + start_arm_2_y*turned_22 + start_arm_2_z*turned_23
             span_2_y = arm_2_y + y - base_2_y
             arm_2_z = start_arm_2_y*turned_32 + start_arm_2_z*turned_33 - start_arm_2_x*sin_pitch
             span_2_z = arm_2_z + z - base_2_z
             length_2 = sqrt(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
-            error_2 = length_2 - l2  # by what leg 2 would be too long
+            error_2 = length_2 - l2  # length error of leg 2
             arm_3_x = start_arm_3_x*turned_11 + start_arm_3_y*turned_12 + start_arm_3_z*turned_13
-            span_3_x = arm_3_x + x - base_3_x  # leg 3: from its joint on the base to its joint on the platform
+            span_3_x = arm_3_x + x - base_3_x  # leg 3: vector from its joint on the base to its joint on the platform
             arm_3_y = start_arm_3_x*turned_21 + start_arm_3_y*turned_22 + start_arm_3_z*turned_23
             span_3_y = arm_3_y + y - base_3_y
             arm_3_z = start_arm_3_y*turned_32 + start_arm_3_z*turned_33 - start_arm_3_x*sin_pitch
             span_3_z = arm_3_z + z - base_3_z
             length_3 = sqrt(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
-            error_3 = length_3 - l3  # by what leg 3 would be too long
+            error_3 = length_3 - l3  # length error of leg 3
             arm_4_x = start_arm_4_x*turned_11 + start_arm_4_y*turned_12 + start_arm_4_z*turned_13
-            span_4_x = arm_4_x + x - base_4_x  # leg 4: from its joint on the base to its joint on the platform
+            span_4_x = arm_4_x + x - base_4_x  # leg 4: vector from its joint on the base to its joint on the platform
             arm_4_y = start_arm_4_x*turned_21 + start_arm_4_y*turned_22 + start_arm_4_z*turned_23
             span_4_y = arm_4_y + y - base_4_y
             arm_4_z = start_arm_4_y*turned_32 + start_arm_4_z*turned_33 - start_arm_4_x*sin_pitch
             span_4_z = arm_4_z + z - base_4_z
             length_4 = sqrt(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
-            error_4 = length_4 - l4  # by what leg 4 would be too long
+            error_4 = length_4 - l4  # length error of leg 4
             arm_5_x = start_arm_5_x*turned_11 + start_arm_5_y*turned_12 + start_arm_5_z*turned_13
-            span_5_x = arm_5_x + x - base_5_x  # leg 5: from its joint on the base to its joint on the platform
+            span_5_x = arm_5_x + x - base_5_x  # leg 5: vector from its joint on the base to its joint on the platform
             arm_5_y = start_arm_5_x*turned_21 + start_arm_5_y*turned_22 + start_arm_5_z*turned_23
             span_5_y = arm_5_y + y - base_5_y
             arm_5_z = start_arm_5_y*turned_32 + start_arm_5_z*turned_33 - start_arm_5_x*sin_pitch
             span_5_z = arm_5_z + z - base_5_z
             length_5 = sqrt(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
-            error_5 = length_5 - l5  # by what leg 5 would be too long
+            error_5 = length_5 - l5  # length error of leg 5
             arm_6_x = start_arm_6_x*turned_11 + start_arm_6_y*turned_12 + start_arm_6_z*turned_13
-            span_6_x = arm_6_x + x - base_6_x  # leg 6: from its joint on the base to its joint on the platform
+            span_6_x = arm_6_x + x - base_6_x  # leg 6: vector from its joint on the base to its joint on the platform
             arm_6_y = start_arm_6_x*turned_21 + start_arm_6_y*turned_22 + start_arm_6_z*turned_23
             span_6_y = arm_6_y + y - base_6_y
             arm_6_z = start_arm_6_y*turned_32 + start_arm_6_z*turned_33 - start_arm_6_x*sin_pitch
             span_6_z = arm_6_z + z - base_6_z
             length_6 = sqrt(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
-            error_6 = length_6 - l6  # by what leg 6 would be too long
-            # whether the rods fit
+            error_6 = length_6 - l6  # length error of leg 6
+            # whether every leg has its length
             fit = (
                 (abs(error_1) <= within) and (abs(error_2) <= within) and (abs(error_3) <= within)
                 and (abs(error_4) <= within) and (abs(error_5) <= within) and (abs(error_6) <= within)
             )
-            # leg 1: its direction, and the moment of that about the platform's origin
+            # leg 1 as a line: unit vector, and its moment about the platform's origin
             divisor_1 = length_1 if length_1 > machine_scale_times_shortest_link else 1.0
             one_by_length_1 = 1.0/divisor_1
             along_1_x = one_by_length_1*span_1_x
@@ -1347,7 +1353,7 @@ class Hexapod(IterativeForward):
             moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*one_by_platform_radius
             moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*one_by_platform_radius
             moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*one_by_platform_radius
-            # leg 2: its direction, and the moment of that about the platform's origin
+            # leg 2 as a line: unit vector, and its moment about the platform's origin
             divisor_2 = length_2 if length_2 > machine_scale_times_shortest_link else 1.0
             one_by_length_2 = 1.0/divisor_2
             along_2_x = one_by_length_2*span_2_x
@@ -1356,7 +1362,7 @@ class Hexapod(IterativeForward):
             moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*one_by_platform_radius
             moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*one_by_platform_radius
             moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*one_by_platform_radius
-            # leg 3: its direction, and the moment of that about the platform's origin
+            # leg 3 as a line: unit vector, and its moment about the platform's origin
             divisor_3 = length_3 if length_3 > machine_scale_times_shortest_link else 1.0
             one_by_length_3 = 1.0/divisor_3
             along_3_x = one_by_length_3*span_3_x
@@ -1365,7 +1371,7 @@ class Hexapod(IterativeForward):
             moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*one_by_platform_radius
             moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*one_by_platform_radius
             moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*one_by_platform_radius
-            # leg 4: its direction, and the moment of that about the platform's origin
+            # leg 4 as a line: unit vector, and its moment about the platform's origin
             divisor_4 = length_4 if length_4 > machine_scale_times_shortest_link else 1.0
             one_by_length_4 = 1.0/divisor_4
             along_4_x = one_by_length_4*span_4_x
@@ -1374,7 +1380,7 @@ class Hexapod(IterativeForward):
             moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*one_by_platform_radius
             moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*one_by_platform_radius
             moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*one_by_platform_radius
-            # leg 5: its direction, and the moment of that about the platform's origin
+            # leg 5 as a line: unit vector, and its moment about the platform's origin
             divisor_5 = length_5 if length_5 > machine_scale_times_shortest_link else 1.0
             one_by_length_5 = 1.0/divisor_5
             along_5_x = one_by_length_5*span_5_x
@@ -1383,7 +1389,7 @@ class Hexapod(IterativeForward):
             moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*one_by_platform_radius
             moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*one_by_platform_radius
             moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*one_by_platform_radius
-            # leg 6: its direction, and the moment of that about the platform's origin
+            # leg 6 as a line: unit vector, and its moment about the platform's origin
             divisor_6 = length_6 if length_6 > machine_scale_times_shortest_link else 1.0
             one_by_length_6 = 1.0/divisor_6
             along_6_x = one_by_length_6*span_6_x
@@ -1392,7 +1398,7 @@ class Hexapod(IterativeForward):
             moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*one_by_platform_radius
             moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*one_by_platform_radius
             moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*one_by_platform_radius
-            # the twist that lets the errors vanish
+            # Newton step: twist that cancels the length errors
             determinant, x_rate, y_rate, z_rate, swing_x, swing_y, swing_z = solve(
                 (
                     (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
@@ -1411,7 +1417,7 @@ class Hexapod(IterativeForward):
             pitch_rate = spin_y*cos_yaw - spin_x*sin_yaw
             spin_z = one_by_platform_radius*swing_z
             yaw_rate = spin_z + roll_rate*sin_pitch
-            # of the step, in machines and radians
+            # size of the step, in characteristic lengths and radians
             size = root(
                 pitch_rate*pitch_rate + roll_rate*roll_rate + yaw_rate*yaw_rate
                 + (x_rate*x_rate + y_rate*y_rate + z_rate*z_rate)/machine_scale_squared
@@ -1432,7 +1438,7 @@ class Hexapod(IterativeForward):
         # the other assembly mode
         if not (assembly_sign*determinant > 0.0):
             return Status.IMPOSSIBLE
-        r11 = start_r11*turned_11 + start_r21*turned_12 + start_r31*turned_13  # the start, and the turn away from it
+        r11 = start_r11*turned_11 + start_r21*turned_12 + start_r31*turned_13  # the start, turned
         r12 = start_r12*turned_11 + start_r22*turned_12 + start_r32*turned_13
         r13 = start_r13*turned_11 + start_r23*turned_12 + start_r33*turned_13
         r21 = start_r11*turned_21 + start_r21*turned_22 + start_r31*turned_23
@@ -1465,7 +1471,7 @@ class Hexapod(IterativeForward):
         home_x = k.home_x
         home_y = k.home_y
         home_z = k.home_z
-        # the platform on its rods, searched from the home pose
+        # pose of the platform, by Newton's method from the home pose
         found = self._find_platform(
             (
                 axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
@@ -1486,10 +1492,10 @@ class Hexapod(IterativeForward):
             (start_r21, start_r22, start_r23),
             (start_r31, start_r32, start_r33),
         ) = start_rotation
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= start_x <= 1e9 and -1e9 <= start_y <= 1e9 and -1e9 <= start_z <= 1e9):
             return Status.BAD_INPUT
-        # the platform on its rods, searched from the given start
+        # pose of the platform, by Newton's method from the given start
         found = self._find_platform(
             (
                 axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_r11, start_r12, start_r13, start_r21,
@@ -1517,7 +1523,7 @@ class Hexapod(IterativeForward):
         home_x = k.home_x
         home_y = k.home_y
         home_z = k.home_z
-        # the platform on its rods, searched from the home pose
+        # pose of the platform, by Newton's method from the home pose
         found = self._find_platform(
             (
                 axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
@@ -1620,78 +1626,72 @@ class Hexapod(IterativeForward):
         platform_6_x = k.platform_6_x
         platform_6_y = k.platform_6_y
         platform_6_z = k.platform_6_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
-        span_1_x = arm_1_x + x - base_1_x  # rod 1
+        span_1_x = arm_1_x + x - base_1_x  # rod 1: known part of its vector
         arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
-        span_1_y = arm_1_y + y - base_1_y  # rod 1
+        span_1_y = arm_1_y + y - base_1_y
         arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
-        span_1_z = arm_1_z + z - base_1_z  # rod 1
-        # l1: quadratic in the rod 1 equation
-        root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
-        l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
+        span_1_z = arm_1_z + z - base_1_z
+        radicand_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z  # quadratic equation for l1: rod 1
+        l1 = (sqrt(radicand_l1) if radicand_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 1: without length it has no direction", 0.0)
         arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
-        span_2_x = arm_2_x + x - base_2_x  # rod 2
+        span_2_x = arm_2_x + x - base_2_x  # rod 2: known part of its vector
         arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
-        span_2_y = arm_2_y + y - base_2_y  # rod 2
+        span_2_y = arm_2_y + y - base_2_y
         arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
-        span_2_z = arm_2_z + z - base_2_z  # rod 2
-        # l2: quadratic in the rod 2 equation
-        root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
-        l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
+        span_2_z = arm_2_z + z - base_2_z
+        radicand_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z  # quadratic equation for l2: rod 2
+        l2 = (sqrt(radicand_l2) if radicand_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 2: without length it has no direction", 0.0)
         arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
-        span_3_x = arm_3_x + x - base_3_x  # rod 3
+        span_3_x = arm_3_x + x - base_3_x  # rod 3: known part of its vector
         arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
-        span_3_y = arm_3_y + y - base_3_y  # rod 3
+        span_3_y = arm_3_y + y - base_3_y
         arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
-        span_3_z = arm_3_z + z - base_3_z  # rod 3
-        # l3: quadratic in the rod 3 equation
-        root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
-        l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
+        span_3_z = arm_3_z + z - base_3_z
+        radicand_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z  # quadratic equation for l3: rod 3
+        l3 = (sqrt(radicand_l3) if radicand_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 3: without length it has no direction", 0.0)
         arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
-        span_4_x = arm_4_x + x - base_4_x  # rod 4
+        span_4_x = arm_4_x + x - base_4_x  # rod 4: known part of its vector
         arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
-        span_4_y = arm_4_y + y - base_4_y  # rod 4
+        span_4_y = arm_4_y + y - base_4_y
         arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
-        span_4_z = arm_4_z + z - base_4_z  # rod 4
-        # l4: quadratic in the rod 4 equation
-        root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
-        l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
+        span_4_z = arm_4_z + z - base_4_z
+        radicand_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z  # quadratic equation for l4: rod 4
+        l4 = (sqrt(radicand_l4) if radicand_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 4: without length it has no direction", 0.0)
         arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
-        span_5_x = arm_5_x + x - base_5_x  # rod 5
+        span_5_x = arm_5_x + x - base_5_x  # rod 5: known part of its vector
         arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
-        span_5_y = arm_5_y + y - base_5_y  # rod 5
+        span_5_y = arm_5_y + y - base_5_y
         arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
-        span_5_z = arm_5_z + z - base_5_z  # rod 5
-        # l5: quadratic in the rod 5 equation
-        root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
-        l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
+        span_5_z = arm_5_z + z - base_5_z
+        radicand_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z  # quadratic equation for l5: rod 5
+        l5 = (sqrt(radicand_l5) if radicand_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 5: without length it has no direction", 0.0)
         arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
-        span_6_x = arm_6_x + x - base_6_x  # rod 6
+        span_6_x = arm_6_x + x - base_6_x  # rod 6: known part of its vector
         arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
-        span_6_y = arm_6_y + y - base_6_y  # rod 6
+        span_6_y = arm_6_y + y - base_6_y
         arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
-        span_6_z = arm_6_z + z - base_6_z  # rod 6
-        # l6: quadratic in the rod 6 equation
-        root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
-        l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
+        span_6_z = arm_6_z + z - base_6_z
+        radicand_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z  # quadratic equation for l6: rod 6
+        l6 = (sqrt(radicand_l6) if radicand_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 6: without length it has no direction", 0.0)
@@ -1887,7 +1887,7 @@ class Hexapod(IterativeForward):
         moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*one_by_platform_radius
         moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*one_by_platform_radius
         moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*one_by_platform_radius
-        # margin of the platform
+        # determinant of the legs as lines: zero in a type 2 singularity
         (determinant,) = solve(
             (
                 (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
@@ -1989,7 +1989,7 @@ class Hexapod(IterativeForward):
         home_x = k.home_x
         home_y = k.home_y
         home_z = k.home_z
-        # the platform on its rods, searched from the home pose
+        # pose of the platform, by Newton's method from the home pose
         found = self._find_platform(
             (
                 axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
@@ -2018,7 +2018,7 @@ class Hexapod(IterativeForward):
         home_y = k.home_y
         home_z = k.home_z
         one_by_platform_radius = k.one_by_platform_radius
-        # the platform on its rods, searched from the home pose
+        # pose of the platform, by Newton's method from the home pose
         found = self._find_platform(
             (
                 axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
@@ -2037,7 +2037,7 @@ class Hexapod(IterativeForward):
         # nothing controls the plate
         if not (abs(determinant) > 1e-11):
             return Status.IMPOSSIBLE
-        # how the legs move the platform
+        # twist of the platform per velocity of each leg
         (
             _, column_1_vx, column_2_vx, column_3_vx, column_4_vx, column_5_vx, column_6_vx, column_1_vy,
             column_2_vy, column_3_vy, column_4_vy, column_5_vy, column_6_vy, column_1_vz, column_2_vz,

@@ -211,7 +211,7 @@ class HGantry2(OffsetKinematics):
             raise self._refusal("upper_y: upper limit of Y of the carriage, both 0: no limit", upper_y=upper_y)
         if not ((lower_a < upper_a) or (abs(lower_a) + abs(upper_a) <= 0.0)):
             raise self._refusal("lower_a below upper_a, or both 0", lower_a=lower_a, upper_a=upper_a)
-        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: no limit
+        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: whether it has no limits
         effective_lower_a = lower_a
         effective_upper_a = upper_a
         tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
@@ -219,7 +219,7 @@ class HGantry2(OffsetKinematics):
         highest_a = 1e12 if unlimited_a else effective_upper_a + tolerance_a
         if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
             raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
-        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: no limit
+        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: whether it has no limits
         effective_lower_b = lower_b
         effective_upper_b = upper_b
         tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
@@ -227,7 +227,7 @@ class HGantry2(OffsetKinematics):
         highest_b = 1e12 if unlimited_b else effective_upper_b + tolerance_b
         if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
             raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: no limit
+        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: whether it has no limits
         effective_lower_x = lower_x
         effective_upper_x = upper_x
         tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
@@ -235,13 +235,13 @@ class HGantry2(OffsetKinematics):
         highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
         if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
             raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: no limit
+        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: whether it has no limits
         effective_lower_y = lower_y
         effective_upper_y = upper_y
         tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
         lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
         highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         machine_scale_times_plane = 1e-6*machine_scale
         return Constants(
             offset_a=offset_a, offset_b=offset_b, check_limits=check_limits, lower_a=effective_lower_a,
@@ -259,7 +259,7 @@ class HGantry2(OffsetKinematics):
         k = self._constants
         offset_a = k.offset_a
         offset_b = k.offset_b
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         a = axis_a - offset_a
@@ -271,7 +271,7 @@ class HGantry2(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a, axis_b = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -285,14 +285,14 @@ class HGantry2(OffsetKinematics):
         machine_scale_times_plane = k.machine_scale_times_plane
         offset_a = k.offset_a
         offset_b = k.offset_b
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         axis_a = a + offset_a
         b = -x - y
         axis_b = b + offset_b
@@ -349,7 +349,7 @@ class HGantry2(OffsetKinematics):
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a, axis_b = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         return ()
@@ -357,7 +357,7 @@ class HGantry2(OffsetKinematics):
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a, axis_b = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         return ((0.5, -0.5), (-0.5, -0.5))
@@ -376,7 +376,7 @@ class HGantry2(OffsetKinematics):
         machine_scale_times_plane = k.machine_scale_times_plane
         offset_a = k.offset_a
         offset_b = k.offset_b
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
@@ -388,7 +388,7 @@ class HGantry2(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         y_minus_point_y = y - point_y
         x_minus_point_x = x - point_x
-        a = x_minus_point_x - y_minus_point_y  # a, b: affine in the x and y equations
+        a = x_minus_point_x - y_minus_point_y  # a and b from the x and y equations, linear in both
         axis_a = a + offset_a
         b = -x_minus_point_x - y_minus_point_y
         axis_b = b + offset_b
@@ -397,7 +397,7 @@ class HGantry2(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a, axis_b = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         return ()

@@ -242,7 +242,7 @@ class HGantry3(OffsetKinematics):
             raise self._refusal("upper_y: upper limit of Y of the carriage, both 0: no limit", upper_y=upper_y)
         if not ((lower_a < upper_a) or (abs(lower_a) + abs(upper_a) <= 0.0)):
             raise self._refusal("lower_a below upper_a, or both 0", lower_a=lower_a, upper_a=upper_a)
-        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: no limit
+        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: whether it has no limits
         effective_lower_a = lower_a
         effective_upper_a = upper_a
         tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
@@ -250,7 +250,7 @@ class HGantry3(OffsetKinematics):
         highest_a = 1e12 if unlimited_a else effective_upper_a + tolerance_a
         if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
             raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
-        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: no limit
+        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: whether it has no limits
         effective_lower_b = lower_b
         effective_upper_b = upper_b
         tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
@@ -258,7 +258,7 @@ class HGantry3(OffsetKinematics):
         highest_b = 1e12 if unlimited_b else effective_upper_b + tolerance_b
         if not ((lower_z < upper_z) or (abs(lower_z) + abs(upper_z) <= 0.0)):
             raise self._refusal("lower_z below upper_z, or both 0", lower_z=lower_z, upper_z=upper_z)
-        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: no limit
+        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: whether it has no limits
         effective_lower_z = lower_z
         effective_upper_z = upper_z
         tolerance_z = 1e-9 + 1e-9*abs(effective_lower_z) + 1e-9*abs(effective_upper_z)
@@ -266,7 +266,7 @@ class HGantry3(OffsetKinematics):
         highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
         if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
             raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: no limit
+        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: whether it has no limits
         effective_lower_x = lower_x
         effective_upper_x = upper_x
         tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
@@ -274,13 +274,13 @@ class HGantry3(OffsetKinematics):
         highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
         if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
             raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: no limit
+        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: whether it has no limits
         effective_lower_y = lower_y
         effective_upper_y = upper_y
         tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
         lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
         highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         return Constants(
             offset_a=offset_a, offset_b=offset_b, offset_z=offset_z, check_limits=check_limits,
             lower_a=effective_lower_a, upper_a=effective_upper_a, unlimited_a=unlimited_a, lowest_a=lowest_a,
@@ -299,7 +299,7 @@ class HGantry3(OffsetKinematics):
         offset_a = k.offset_a
         offset_b = k.offset_b
         offset_z = k.offset_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         a = axis_a - offset_a
@@ -312,7 +312,7 @@ class HGantry3(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a, axis_b, axis_z = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -326,10 +326,10 @@ class HGantry3(OffsetKinematics):
         offset_a = k.offset_a
         offset_b = k.offset_b
         offset_z = k.offset_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         axis_a = a + offset_a
         b = -x - y
         axis_b = b + offset_b
@@ -396,7 +396,7 @@ class HGantry3(OffsetKinematics):
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a, axis_b, axis_z = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ()
@@ -404,7 +404,7 @@ class HGantry3(OffsetKinematics):
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a, axis_b, axis_z = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ((0.5, -0.5, 0.0), (-0.5, -0.5, 0.0), (0.0, 0.0, 1.0))
@@ -423,7 +423,7 @@ class HGantry3(OffsetKinematics):
         offset_a = k.offset_a
         offset_b = k.offset_b
         offset_z = k.offset_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
@@ -431,18 +431,18 @@ class HGantry3(OffsetKinematics):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         y_minus_point_y = y - point_y
         x_minus_point_x = x - point_x
-        a = x_minus_point_x - y_minus_point_y  # a, b: affine in the x and y equations
+        a = x_minus_point_x - y_minus_point_y  # a and b from the x and y equations, linear in both
         axis_a = a + offset_a
         b = -x_minus_point_x - y_minus_point_y
         axis_b = b + offset_b
-        joint_z = z - point_z  # joint_z: affine in the z equation
+        joint_z = z - point_z  # joint_z from the z equation, which is linear in it
         axis_z = joint_z + offset_z
         return (axis_a, axis_b, axis_z)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a, axis_b, axis_z = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ()

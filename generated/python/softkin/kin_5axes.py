@@ -300,7 +300,7 @@ class Kin5Axes(Mechanism):
             raise self._refusal("upper_b: B: upper limit of the axis, both 0: no limit", upper_b=upper_b)
         if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
             raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: no limit
+        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: whether it has no limits
         effective_lower_x = lower_x
         effective_upper_x = upper_x
         tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
@@ -308,7 +308,7 @@ class Kin5Axes(Mechanism):
         highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
         if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
             raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: no limit
+        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: whether it has no limits
         effective_lower_y = lower_y
         effective_upper_y = upper_y
         tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
@@ -316,7 +316,7 @@ class Kin5Axes(Mechanism):
         highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
         if not ((lower_z < upper_z) or (abs(lower_z) + abs(upper_z) <= 0.0)):
             raise self._refusal("lower_z below upper_z, or both 0", lower_z=lower_z, upper_z=upper_z)
-        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: no limit
+        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: whether it has no limits
         effective_lower_z = lower_z
         effective_upper_z = upper_z
         tolerance_z = 1e-9 + 1e-9*abs(effective_lower_z) + 1e-9*abs(effective_upper_z)
@@ -324,27 +324,27 @@ class Kin5Axes(Mechanism):
         highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
         if not ((lower_a < upper_a) or (abs(lower_a) + abs(upper_a) <= 0.0)):
             raise self._refusal("lower_a below upper_a, or both 0", lower_a=lower_a, upper_a=upper_a)
-        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: no limit
+        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: whether it has no limits
         effective_lower_a = lower_a
         effective_upper_a = upper_a
         tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
         lowest_a = -1e12 if unlimited_a else effective_lower_a - tolerance_a
         highest_a = 1e12 if unlimited_a else effective_upper_a + tolerance_a
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a = (not unlimited_a) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
         mid_a = 0.5*effective_lower_a + 0.5*effective_upper_a
         if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
             raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
-        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: no limit
+        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: whether it has no limits
         effective_lower_b = lower_b
         effective_upper_b = upper_b
         tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
         lowest_b = -1e12 if unlimited_b else effective_lower_b - tolerance_b
         highest_b = 1e12 if unlimited_b else effective_upper_b + tolerance_b
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_b = (not unlimited_b) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
         mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         tool_length_times_tool_side = tool_side*tool_length
         return Constants(
             tool_length=tool_length, tool_side=tool_side, offset_x=offset_x, offset_y=offset_y, offset_z=offset_z,
@@ -370,7 +370,7 @@ class Kin5Axes(Mechanism):
         offset_z = k.offset_z
         tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
             and -1e9 <= axis_z <= 1e9
@@ -406,7 +406,7 @@ class Kin5Axes(Mechanism):
         offset_a = k.offset_a
         offset_b = k.offset_b
         tool_side = k.tool_side
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
             and -1e9 <= axis_z <= 1e9
@@ -446,13 +446,13 @@ class Kin5Axes(Mechanism):
         single_b = k.single_b
         tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a <= 1e9
             and -1e9 <= ref_b <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
+        wrist_x = x - r13*tool_length_times_tool_side  # wrist centre: the point in which the last axes intersect
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length_times_tool_side
         axis_y = offset_y + wrist_y
@@ -460,8 +460,8 @@ class Kin5Axes(Mechanism):
         axis_z = offset_z + wrist_z
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
+        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_a > 1e-11:
             direction_x_a = sigma_roll*r13_of_a
             direction_y_a = sigma_roll*r23_of_a
@@ -469,15 +469,15 @@ class Kin5Axes(Mechanism):
             free_a = (ref_a - offset_a)*DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
-        open_a = mid_a if single_a else ref_a  # A: where its turn is open
+        open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
         near_a = 360.0*(turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
-        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0)/DEGREE  # A: its turn
+        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0)/DEGREE  # A: whole turns added
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
         a_radius_of_b = sigma_roll*radius_a
-        open_b = mid_b if single_b else ref_b  # B: where its turn is open
+        open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
         near_b = 360.0*(turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
-        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0)/DEGREE  # B: its turn
+        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0)/DEGREE  # B: whole turns added
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
         return (axis_x, axis_y, axis_z, axis_a, axis_b)
@@ -546,7 +546,7 @@ class Kin5Axes(Mechanism):
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self._constants
         offset_b = k.offset_b
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
             and -1e9 <= axis_z <= 1e9
@@ -567,7 +567,7 @@ class Kin5Axes(Mechanism):
         offset_z = k.offset_z
         tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
             and -1e9 <= axis_z <= 1e9

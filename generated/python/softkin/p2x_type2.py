@@ -216,7 +216,7 @@ class P2XType2(OffsetKinematics):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
@@ -224,15 +224,16 @@ class P2XType2(OffsetKinematics):
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        machine_scale = arm_length  # a length of the machine
-        assembly_sign = 1.0 if tcp_above else -1.0  # assembly mode of this machine
-        span_1_x = 0.5*tcp_link_distance  # rod 1
+        machine_scale = arm_length  # characteristic length of the machine
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = 1.0 if tcp_above else -1.0
+        span_1_x = 0.5*tcp_link_distance  # rod 1: known part of its vector
         machine_scale_times_rounding = 1e-12*machine_scale
         arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
         machine_scale_times_plane = 1e-6*machine_scale
@@ -263,21 +264,21 @@ class P2XType2(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         tcp_link_distance = k.tcp_link_distance
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1
+        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
         # the mirror that the machine does not have
         if not (pivot_1_x >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
-        root_square_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # y: quadratic in the rod 1 equation
+        radicand_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # quadratic equation for y: rod 1
         # rod 1 cannot reach
-        if not (root_square_y >= -arm_length_squared_times_rounding):
+        if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        x = 0.5*(a1 + a2)  # x: affine in the x equation
-        y = (sqrt(root_square_y) if root_square_y > 0.0 else 0.0)*assembly_sign
+        x = 0.5*(a1 + a2)  # x from the x equation, which is linear in it
+        y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0)*assembly_sign
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ())
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
@@ -290,18 +291,18 @@ class P2XType2(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         tcp_link_distance = k.tcp_link_distance
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1
+        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
         # the mirror that the machine does not have
         if not (pivot_1_x >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
-        root_square_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # y: quadratic in the rod 1 equation
+        radicand_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # quadratic equation for y: rod 1
         # rod 1 cannot reach
-        if not (root_square_y >= -arm_length_squared_times_rounding):
+        if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -319,16 +320,16 @@ class P2XType2(OffsetKinematics):
         offset_a2 = k.offset_a2
         part_of_constant = k.part_of_constant
         span_1_x = k.span_1_x
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        root_square_a2 = (arm_length + y)*(arm_length - y)  # a2: quadratic in the rod 1 (through x) equation
+        radicand_a2 = (arm_length + y)*(arm_length - y)  # quadratic equation for a2: rod 1 (through x)
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -part_of_constant):
+        if not (radicand_a2 >= -part_of_constant):
             missing = 0.5*(abs(arm_length - y) + abs(arm_length + y)) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign_by_arm_length*y
@@ -339,8 +340,8 @@ class P2XType2(OffsetKinematics):
                 Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing,
             )
         middle_a2 = span_1_x + x
-        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        a1 = 2.0*x - a2  # a1: affine in the x equation
+        a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        a1 = 2.0*x - a2  # a1 from the x equation, which is linear in it
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
@@ -381,22 +382,22 @@ class P2XType2(OffsetKinematics):
         offset_a2 = k.offset_a2
         span_1_x = k.span_1_x
         tcp_link_distance = k.tcp_link_distance
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1
+        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
         # the mirror that the machine does not have
         if not (pivot_1_x >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
-        root_square_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # y: quadratic in the rod 1 equation
+        radicand_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # quadratic equation for y: rod 1
         # rod 1 cannot reach
-        if not (root_square_y >= -arm_length_squared_times_rounding):
+        if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        x = 0.5*(a1 + a2)  # x: affine in the x equation
+        x = 0.5*(a1 + a2)  # x from the x equation, which is linear in it
         margin_meet_a2 = -2.0*(span_1_x + x - a2)/arm_length
-        y = (sqrt(root_square_y) if root_square_y > 0.0 else 0.0)*assembly_sign
+        y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0)*assembly_sign
         margin_flat = y/arm_length
         return (margin_meet_a2, margin_flat)
 
@@ -412,20 +413,20 @@ class P2XType2(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         tcp_link_distance = k.tcp_link_distance
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1
+        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
         # the mirror that the machine does not have
         if not (pivot_1_x >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
-        root_square_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # y: quadratic in the rod 1 equation
+        radicand_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # quadratic equation for y: rod 1
         # rod 1 cannot reach
-        if not (root_square_y >= -arm_length_squared_times_rounding):
+        if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        y = (sqrt(root_square_y) if root_square_y > 0.0 else 0.0)*assembly_sign
+        y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0)*assembly_sign
         slope_2_by_y = 2.0*y
         # nothing controls the plate
         if not (abs(slope_2_by_y) > machine_scale_squared_times_free_angle):
@@ -456,7 +457,7 @@ class P2XType2(OffsetKinematics):
         offset_a2 = k.offset_a2
         part_of_constant = k.part_of_constant
         span_1_x = k.span_1_x
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
@@ -466,11 +467,10 @@ class P2XType2(OffsetKinematics):
         if not (abs(point_z - z) <= machine_scale_times_plane):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        flange_y = y - point_y  # the flange behind the point
-        # a2: quadratic in the rod 1 (through x) equation
-        root_square_a2 = (arm_length + flange_y)*(arm_length - flange_y)
+        flange_y = y - point_y  # position of the flange: the point less its offset
+        radicand_a2 = (arm_length + flange_y)*(arm_length - flange_y)  # quadratic equation for a2: rod 1 (through x)
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -part_of_constant):
+        if not (radicand_a2 >= -part_of_constant):
             missing = 0.5*(abs(arm_length - flange_y) + abs(arm_length + flange_y)) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign_by_arm_length*flange_y
@@ -480,10 +480,10 @@ class P2XType2(OffsetKinematics):
             return Diagnosis(
                 Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing,
             )
-        flange_x = x - point_x  # the flange behind the point
+        flange_x = x - point_x  # position of the flange: the point less its offset
         middle_a2 = flange_x + span_1_x
-        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        a1 = 2.0*flange_x - a2  # a1: affine in the x equation
+        a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        a1 = 2.0*flange_x - a2  # a1 from the x equation, which is linear in it
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
@@ -498,18 +498,18 @@ class P2XType2(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         tcp_link_distance = k.tcp_link_distance
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1
+        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
         # the mirror that the machine does not have
         if not (pivot_1_x >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
-        root_square_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # y: quadratic in the rod 1 equation
+        radicand_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # quadratic equation for y: rod 1
         # rod 1 cannot reach
-        if not (root_square_y >= -arm_length_squared_times_rounding):
+        if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ()
 

@@ -211,7 +211,7 @@ class P2Y(OffsetKinematics):
             raise self._refusal("upper_y: upper limit of Y of the carriage, both 0: no limit", upper_y=upper_y)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
@@ -219,7 +219,7 @@ class P2Y(OffsetKinematics):
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
@@ -227,7 +227,7 @@ class P2Y(OffsetKinematics):
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
             raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: no limit
+        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: whether it has no limits
         effective_lower_x = lower_x
         effective_upper_x = upper_x
         tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
@@ -235,13 +235,13 @@ class P2Y(OffsetKinematics):
         highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
         if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
             raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: no limit
+        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: whether it has no limits
         effective_lower_y = lower_y
         effective_upper_y = upper_y
         tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
         lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
         highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         machine_scale_times_plane = 1e-6*machine_scale
         return Constants(
             offset_a1=offset_a1, offset_a2=offset_a2, check_limits=check_limits, lower_a1=effective_lower_a1,
@@ -259,7 +259,7 @@ class P2Y(OffsetKinematics):
         k = self._constants
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
@@ -271,7 +271,7 @@ class P2Y(OffsetKinematics):
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a1, axis_a2 = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -285,14 +285,14 @@ class P2Y(OffsetKinematics):
         machine_scale_times_plane = k.machine_scale_times_plane
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        a1 = x + y  # a1, a2: affine in the x and y equations
+        a1 = x + y  # a1 and a2 from the x and y equations, linear in both
         axis_a1 = a1 + offset_a1
         a2 = y - x
         axis_a2 = a2 + offset_a2
@@ -349,7 +349,7 @@ class P2Y(OffsetKinematics):
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2 = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         return ()
@@ -357,7 +357,7 @@ class P2Y(OffsetKinematics):
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2 = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         return ((0.5, -0.5), (0.5, 0.5))
@@ -376,7 +376,7 @@ class P2Y(OffsetKinematics):
         machine_scale_times_plane = k.machine_scale_times_plane
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
@@ -388,7 +388,7 @@ class P2Y(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         y_minus_point_y = y - point_y
         x_minus_point_x = x - point_x
-        a1 = x_minus_point_x + y_minus_point_y  # a1, a2: affine in the x and y equations
+        a1 = x_minus_point_x + y_minus_point_y  # a1 and a2 from the x and y equations, linear in both
         axis_a1 = a1 + offset_a1
         a2 = y_minus_point_y - x_minus_point_x
         axis_a2 = a2 + offset_a2
@@ -397,7 +397,7 @@ class P2Y(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         return ()

@@ -176,24 +176,24 @@ class Polar(Mechanism):
             raise self._refusal("upper_r: R: upper limit of the axis, both 0: joint value 0 or more", upper_r=upper_r)
         if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
             raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
-        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: no limit
+        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: whether it has no limits
         effective_lower_c = lower_c
         effective_upper_c = upper_c
         tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
         lowest_c = -1e12 if unlimited_c else effective_lower_c - tolerance_c
         highest_c = 1e12 if unlimited_c else effective_upper_c + tolerance_c
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_c = (not unlimited_c) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
         if not ((lower_r < upper_r) or (abs(lower_r) + abs(upper_r) <= 0.0)):
             raise self._refusal("lower_r below upper_r, or both 0", lower_r=lower_r, upper_r=upper_r)
-        unlimited_r = False  # r: no limit
+        unlimited_r = False  # r: whether it has no limits
         effective_lower_r = lower_r if abs(lower_r) + abs(upper_r) > 0.0 else offset_r
         effective_upper_r = upper_r if abs(lower_r) + abs(upper_r) > 0.0 else 1e9 + offset_r
         tolerance_r = 1e-9 + 1e-9*abs(effective_lower_r) + 1e-9*abs(effective_upper_r)
         lowest_r = -1e12 if unlimited_r else effective_lower_r - tolerance_r
         highest_r = 1e12 if unlimited_r else effective_upper_r + tolerance_r
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         machine_scale_times_plane = 1e-6*machine_scale
         machine_scale_times_free_angle = 1e-11*machine_scale
         return Constants(
@@ -211,7 +211,7 @@ class Polar(Mechanism):
         k = self._constants
         offset_c = k.offset_c
         offset_r = k.offset_r
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
             return Status.BAD_INPUT
         r = axis_r - offset_r
@@ -231,7 +231,7 @@ class Polar(Mechanism):
         k = self._constants
         offset_c = k.offset_c
         offset_r = k.offset_r
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
             return Status.BAD_INPUT
         axis_r_minus_offset_r = axis_r - offset_r
@@ -257,15 +257,15 @@ class Polar(Mechanism):
         offset_c = k.offset_c
         offset_r = k.offset_r
         single_c = k.single_c
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        # its reference where it is free
+        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
+        # in the singularity: the angle of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y
@@ -273,9 +273,9 @@ class Polar(Mechanism):
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        open_c = mid_c if single_c else ref_c  # C: where its turn is open
+        open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
         near_c = 360.0*(turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         axis_r = offset_r + radius_c
@@ -316,7 +316,7 @@ class Polar(Mechanism):
         machine_scale = k.machine_scale
         offset_c = k.offset_c
         offset_r = k.offset_r
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
             return Status.BAD_INPUT
         r = axis_r - offset_r
@@ -328,9 +328,9 @@ class Polar(Mechanism):
         x = r*cos_c
         sin_c = sin(c)
         y = r*sin_c
-        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
         length_free_c = radius_c/machine_scale
-        margin_free_c = 1.0 if length_free_c > 1e-11 else 0.0  # 1, and 0 where nothing determines the axis
+        margin_free_c = 1.0 if length_free_c > 1e-11 else 0.0  # 0 where nothing determines the axis, else 1 or -1
         return (margin_free_c,)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -339,7 +339,7 @@ class Polar(Mechanism):
         k = self._constants
         offset_c = k.offset_c
         offset_r = k.offset_r
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
             return Status.BAD_INPUT
         r = axis_r - offset_r
@@ -361,7 +361,7 @@ class Polar(Mechanism):
         k = self._constants
         offset_c = k.offset_c
         offset_r = k.offset_r
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
             return Status.BAD_INPUT
         r = axis_r - offset_r

@@ -209,18 +209,18 @@ class PolarZ(Mechanism):
             raise self._refusal("upper_z: Z: upper limit of the axis, both 0: no limit", upper_z=upper_z)
         if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
             raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
-        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: no limit
+        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: whether it has no limits
         effective_lower_c = lower_c
         effective_upper_c = upper_c
         tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
         lowest_c = -1e12 if unlimited_c else effective_lower_c - tolerance_c
         highest_c = 1e12 if unlimited_c else effective_upper_c + tolerance_c
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_c = (not unlimited_c) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
         if not ((lower_r < upper_r) or (abs(lower_r) + abs(upper_r) <= 0.0)):
             raise self._refusal("lower_r below upper_r, or both 0", lower_r=lower_r, upper_r=upper_r)
-        unlimited_r = False  # r: no limit
+        unlimited_r = False  # r: whether it has no limits
         effective_lower_r = lower_r if abs(lower_r) + abs(upper_r) > 0.0 else offset_r
         effective_upper_r = upper_r if abs(lower_r) + abs(upper_r) > 0.0 else 1e9 + offset_r
         tolerance_r = 1e-9 + 1e-9*abs(effective_lower_r) + 1e-9*abs(effective_upper_r)
@@ -228,13 +228,13 @@ class PolarZ(Mechanism):
         highest_r = 1e12 if unlimited_r else effective_upper_r + tolerance_r
         if not ((lower_z < upper_z) or (abs(lower_z) + abs(upper_z) <= 0.0)):
             raise self._refusal("lower_z below upper_z, or both 0", lower_z=lower_z, upper_z=upper_z)
-        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: no limit
+        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: whether it has no limits
         effective_lower_z = lower_z
         effective_upper_z = upper_z
         tolerance_z = 1e-9 + 1e-9*abs(effective_lower_z) + 1e-9*abs(effective_upper_z)
         lowest_z = -1e12 if unlimited_z else effective_lower_z - tolerance_z
         highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         machine_scale_times_free_angle = 1e-11*machine_scale
         return Constants(
             offset_c=offset_c, offset_r=offset_r, offset_z=offset_z, check_limits=check_limits,
@@ -252,7 +252,7 @@ class PolarZ(Mechanism):
         offset_c = k.offset_c
         offset_r = k.offset_r
         offset_z = k.offset_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         r = axis_r - offset_r
@@ -273,7 +273,7 @@ class PolarZ(Mechanism):
         k = self._constants
         offset_c = k.offset_c
         offset_r = k.offset_r
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         axis_r_minus_offset_r = axis_r - offset_r
@@ -299,11 +299,11 @@ class PolarZ(Mechanism):
         offset_r = k.offset_r
         offset_z = k.offset_z
         single_c = k.single_c
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        # its reference where it is free
+        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
+        # in the singularity: the angle of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y
@@ -311,9 +311,9 @@ class PolarZ(Mechanism):
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        open_c = mid_c if single_c else ref_c  # C: where its turn is open
+        open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
         near_c = 360.0*(turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         axis_r = offset_r + radius_c
@@ -364,7 +364,7 @@ class PolarZ(Mechanism):
         machine_scale = k.machine_scale
         offset_c = k.offset_c
         offset_r = k.offset_r
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         r = axis_r - offset_r
@@ -376,9 +376,9 @@ class PolarZ(Mechanism):
         x = r*cos_c
         sin_c = sin(c)
         y = r*sin_c
-        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
         length_free_c = radius_c/machine_scale
-        margin_free_c = 1.0 if length_free_c > 1e-11 else 0.0  # 1, and 0 where nothing determines the axis
+        margin_free_c = 1.0 if length_free_c > 1e-11 else 0.0  # 0 where nothing determines the axis, else 1 or -1
         return (margin_free_c,)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -387,7 +387,7 @@ class PolarZ(Mechanism):
         k = self._constants
         offset_c = k.offset_c
         offset_r = k.offset_r
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         r = axis_r - offset_r
@@ -409,7 +409,7 @@ class PolarZ(Mechanism):
         k = self._constants
         offset_c = k.offset_c
         offset_r = k.offset_r
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         r = axis_r - offset_r

@@ -119,8 +119,8 @@ class Tool(OrientationKinematics):
             raise self._refusal("tool_y: Flange to the tool, along Y", tool_y=tool_y)
         if not (tool_z >= -1e9 and tool_z <= 1e9):
             raise self._refusal("tool_z: Flange to the tool, along Z", tool_z=tool_z)
-        machine_scale = 1.0  # a length of the machine
-        unnoticed_shift = 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)  # as much may turn with the flange
+        machine_scale = 1.0  # characteristic length of the machine
+        unnoticed_shift = 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)  # offsets up to this are not noticed
         return Constants(
             tool_x=tool_x, tool_y=tool_y, tool_z=tool_z, check_limits=check_limits, machine_scale=machine_scale,
             unnoticed_shift=unnoticed_shift,
@@ -168,15 +168,15 @@ class Tool(OrientationKinematics):
         tool_y = k.tool_y
         tool_z = k.tool_z
         unnoticed_shift = k.unnoticed_shift
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
             return Status.BAD_INPUT
-        # what the flange holds, along the axis that it turns about
+        # the flange's part along the axis about which the flange turns
         flange_along = flange_axis_x*tool_x + flange_axis_y*tool_y + flange_axis_z*tool_z
         part_of_flange_offset = tool_x - flange_along*flange_axis_x
         part_of_flange_offset_2 = tool_y - flange_along*flange_axis_y
         part_of_flange_offset_3 = tool_z - flange_along*flange_axis_z
-        # off the axis that the flange turns about
+        # distance of the flange's part from the axis about which the flange turns
         flange_offset = sqrt(
             part_of_flange_offset*part_of_flange_offset + part_of_flange_offset_2*part_of_flange_offset_2
             + part_of_flange_offset_3*part_of_flange_offset_3
@@ -194,13 +194,13 @@ class Tool(OrientationKinematics):
         tool_x = k.tool_x
         tool_y = k.tool_y
         tool_z = k.tool_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
             and -1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9
         ):
             return Status.BAD_INPUT
-        # what the flange holds, along the axis that it turns about
+        # the flange's part along the axis about which the flange turns
         flange_along = flange_axis_x*tool_x + flange_axis_y*tool_y + flange_axis_z*tool_z
         return (base_axis_x*flange_along, base_axis_y*flange_along, base_axis_z*flange_along)
 
@@ -209,7 +209,7 @@ class Tool(OrientationKinematics):
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
             and -1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9

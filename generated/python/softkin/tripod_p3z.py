@@ -95,26 +95,26 @@ class Constants(NamedTuple):
     tie: float
     pivot_1_y: float
     pivot_2_y: float
-    apart_2_y: float
+    centre_1_to_2_y: float
     pivot_3_y: float
-    apart_3_y: float
+    centre_1_to_3_y: float
     pivot_1_x: float
     pivot_2_x: float
-    apart_2_x: float
+    centre_1_to_2_x: float
     pivot_3_x: float
-    apart_3_x: float
+    centre_1_to_3_x: float
     normal_z: float
     assembly_sign: float
     normal_z_squared: float
     part_of_normal_divisor: float
-    apart_3_y_times_normal_z: float
-    apart_2_y_times_normal_z: float
-    apart_3_x_times_normal_z: float
-    apart_2_x_times_normal_z: float
+    centre_1_to_3_y_times_normal_z: float
+    centre_1_to_2_y_times_normal_z: float
+    centre_1_to_3_x_times_normal_z: float
+    centre_1_to_2_x_times_normal_z: float
     arm_length_squared: float
     arm_length_squared_times_rounding: float
-    part_of_share_2: float
-    part_of_share_3: float
+    part_of_projection_2: float
+    part_of_projection_3: float
     one_by_arm_length: float
     part_of_span_1_x: float
     part_of_span_1_y: float
@@ -401,7 +401,7 @@ class TripodP3Z(OffsetKinematics):
             raise self._refusal("rods long enough to reach the plate")
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
@@ -409,7 +409,7 @@ class TripodP3Z(OffsetKinematics):
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
@@ -417,26 +417,29 @@ class TripodP3Z(OffsetKinematics):
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        machine_scale = arm_length + tcp_displacement  # a length of the machine
+        machine_scale = arm_length + tcp_displacement  # characteristic length of the machine
         tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
-        pivot_1_y = rail_y_1 - rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)  # rod 1
-        pivot_2_y = rail_y_2 - rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
-        pivot_3_y = rail_y_3 - rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)  # rod 3
-        apart_3_y = pivot_3_y - pivot_1_y
-        pivot_1_x = rail_x_1 - rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)  # rod 1
-        pivot_2_x = rail_x_2 - rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = rail_x_3 - rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
-        # assembly mode of this machine
+        pivot_1_y = rail_y_1 - rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)
+        pivot_2_y = rail_y_2 - rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        pivot_3_y = rail_y_3 - rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)
+        centre_1_to_3_y = pivot_3_y - pivot_1_y
+        # rod 1: centre about which it swings
+        pivot_1_x = rail_x_1 - rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)
+        # rod 2: centre about which it swings
+        pivot_2_x = rail_x_2 - rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        # rod 3: centre about which it swings
+        pivot_3_x = rail_x_3 - rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
+        # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = (
             (1.0 if tcp_above else -1.0)
             if (rail_x_2 - rail_x_1)*(rail_y_3 - rail_y_1) - (rail_x_3 - rail_x_1)*(rail_y_2 - rail_y_1) > 0.0
@@ -444,14 +447,14 @@ class TripodP3Z(OffsetKinematics):
         )
         normal_z_squared = normal_z*normal_z
         part_of_normal_divisor = 1e-22*arm_length*arm_length*arm_length*arm_length
-        apart_3_y_times_normal_z = apart_3_y*normal_z
-        apart_2_y_times_normal_z = apart_2_y*normal_z
-        apart_3_x_times_normal_z = apart_3_x*normal_z
-        apart_2_x_times_normal_z = apart_2_x*normal_z
+        centre_1_to_3_y_times_normal_z = centre_1_to_3_y*normal_z
+        centre_1_to_2_y_times_normal_z = centre_1_to_2_y*normal_z
+        centre_1_to_3_x_times_normal_z = centre_1_to_3_x*normal_z
+        centre_1_to_2_x_times_normal_z = centre_1_to_2_x*normal_z
         arm_length_squared = arm_length*arm_length
         arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
-        part_of_share_2 = 0.5*apart_2_x*apart_2_x + 0.5*apart_2_y*apart_2_y
-        part_of_share_3 = 0.5*apart_3_x*apart_3_x + 0.5*apart_3_y*apart_3_y
+        part_of_projection_2 = 0.5*centre_1_to_2_x*centre_1_to_2_x + 0.5*centre_1_to_2_y*centre_1_to_2_y
+        part_of_projection_3 = 0.5*centre_1_to_3_x*centre_1_to_3_x + 0.5*centre_1_to_3_y*centre_1_to_3_y
         one_by_arm_length = 1.0/arm_length
         part_of_span_1_x_2 = sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)
         part_of_span_1_x = rail_x_1 - rail_x_1*tcp_displacement/part_of_span_1_x_2
@@ -483,17 +486,19 @@ class TripodP3Z(OffsetKinematics):
             upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2,
             lower_a3=effective_lower_a3, upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3,
             highest_a3=highest_a3, machine_scale=machine_scale, tie=tie, pivot_1_y=pivot_1_y, pivot_2_y=pivot_2_y,
-            apart_2_y=apart_2_y, pivot_3_y=pivot_3_y, apart_3_y=apart_3_y, pivot_1_x=pivot_1_x, pivot_2_x=pivot_2_x,
-            apart_2_x=apart_2_x, pivot_3_x=pivot_3_x, apart_3_x=apart_3_x, normal_z=normal_z,
-            assembly_sign=assembly_sign, normal_z_squared=normal_z_squared,
-            part_of_normal_divisor=part_of_normal_divisor, apart_3_y_times_normal_z=apart_3_y_times_normal_z,
-            apart_2_y_times_normal_z=apart_2_y_times_normal_z, apart_3_x_times_normal_z=apart_3_x_times_normal_z,
-            apart_2_x_times_normal_z=apart_2_x_times_normal_z, arm_length_squared=arm_length_squared,
-            arm_length_squared_times_rounding=arm_length_squared_times_rounding, part_of_share_2=part_of_share_2,
-            part_of_share_3=part_of_share_3, one_by_arm_length=one_by_arm_length, part_of_span_1_x=part_of_span_1_x,
-            part_of_span_1_y=part_of_span_1_y, part_of_span_2_x=part_of_span_2_x, part_of_span_2_y=part_of_span_2_y,
-            part_of_span_3_x=part_of_span_3_x, part_of_span_3_y=part_of_span_3_y,
-            part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
+            centre_1_to_2_y=centre_1_to_2_y, pivot_3_y=pivot_3_y, centre_1_to_3_y=centre_1_to_3_y,
+            pivot_1_x=pivot_1_x, pivot_2_x=pivot_2_x, centre_1_to_2_x=centre_1_to_2_x, pivot_3_x=pivot_3_x,
+            centre_1_to_3_x=centre_1_to_3_x, normal_z=normal_z, assembly_sign=assembly_sign,
+            normal_z_squared=normal_z_squared, part_of_normal_divisor=part_of_normal_divisor,
+            centre_1_to_3_y_times_normal_z=centre_1_to_3_y_times_normal_z,
+            centre_1_to_2_y_times_normal_z=centre_1_to_2_y_times_normal_z,
+            centre_1_to_3_x_times_normal_z=centre_1_to_3_x_times_normal_z,
+            centre_1_to_2_x_times_normal_z=centre_1_to_2_x_times_normal_z, arm_length_squared=arm_length_squared,
+            arm_length_squared_times_rounding=arm_length_squared_times_rounding,
+            part_of_projection_2=part_of_projection_2, part_of_projection_3=part_of_projection_3,
+            one_by_arm_length=one_by_arm_length, part_of_span_1_x=part_of_span_1_x, part_of_span_1_y=part_of_span_1_y,
+            part_of_span_2_x=part_of_span_2_x, part_of_span_2_y=part_of_span_2_y, part_of_span_3_x=part_of_span_3_x,
+            part_of_span_3_y=part_of_span_3_y, part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
             part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
             part_of_determinant_divisor=part_of_determinant_divisor, part_of_slope_1_by_x=part_of_slope_1_by_x,
             part_of_slope_1_by_y=part_of_slope_1_by_y, part_of_slope_2_by_x=part_of_slope_2_by_x,
@@ -505,17 +510,17 @@ class TripodP3Z(OffsetKinematics):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        apart_2_x = k.apart_2_x
-        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
-        apart_2_y = k.apart_2_y
-        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
-        apart_3_x = k.apart_3_x
-        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
-        apart_3_y = k.apart_3_y
-        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
         arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
+        centre_1_to_2_x = k.centre_1_to_2_x
+        centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x_times_normal_z
+        centre_1_to_2_y = k.centre_1_to_2_y
+        centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y_times_normal_z
+        centre_1_to_3_x = k.centre_1_to_3_x
+        centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x_times_normal_z
+        centre_1_to_3_y = k.centre_1_to_3_y
+        centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y_times_normal_z
         normal_z = k.normal_z
         normal_z_squared = k.normal_z_squared
         offset_a1 = k.offset_a1
@@ -523,54 +528,62 @@ class TripodP3Z(OffsetKinematics):
         offset_a3 = k.offset_a3
         one_by_arm_length = k.one_by_arm_length
         part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
+        part_of_projection_2 = k.part_of_projection_2
+        part_of_projection_3 = k.part_of_projection_3
         pivot_1_x = k.pivot_1_x
         pivot_1_y = k.pivot_1_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        apart_2_z = a2 - a1
+        centre_1_to_2_z = a2 - a1
         a3 = axis_a3 - offset_a3
-        apart_3_z = a3 - a1
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
+        centre_1_to_3_z = a3 - a1
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
-        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
             *(
-                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
-                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+                (centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - centre_1_to_2_y_times_normal_z)*projection_3
             )
         )
         foot_y = (
             one_by_normal_square
             *(
-                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
-                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x_times_normal_z)*projection_2
+                + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
             )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
+                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + pivot_1_y + normal_y*rise
-        z = a1 + foot_z + normal_z*rise
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        y = foot_y + pivot_1_y + height_by_normal*normal_y
+        z = a1 + foot_z + height_by_normal*normal_z
         branch_carriage_1 = (a1 - z)*one_by_arm_length
         branch_carriage_2 = (a2 - z)*one_by_arm_length
         branch_carriage_3 = (a3 - z)*one_by_arm_length
@@ -584,59 +597,66 @@ class TripodP3Z(OffsetKinematics):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        apart_2_x = k.apart_2_x
-        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
-        apart_2_y = k.apart_2_y
-        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
-        apart_3_x = k.apart_3_x
-        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
-        apart_3_y = k.apart_3_y
-        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
         arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
+        centre_1_to_2_x = k.centre_1_to_2_x
+        centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x_times_normal_z
+        centre_1_to_2_y = k.centre_1_to_2_y
+        centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y_times_normal_z
+        centre_1_to_3_x = k.centre_1_to_3_x
+        centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x_times_normal_z
+        centre_1_to_3_y = k.centre_1_to_3_y
+        centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y_times_normal_z
         normal_z_squared = k.normal_z_squared
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
-        # numbers of reasonable size
+        part_of_projection_2 = k.part_of_projection_2
+        part_of_projection_3 = k.part_of_projection_3
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        apart_2_z = a2 - a1
+        centre_1_to_2_z = a2 - a1
         a3 = axis_a3 - offset_a3
-        apart_3_z = a3 - a1
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
+        centre_1_to_3_z = a3 - a1
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
-        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
             *(
-                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
-                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+                (centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - centre_1_to_2_y_times_normal_z)*projection_3
             )
         )
         foot_y = (
             one_by_normal_square
             *(
-                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
-                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x_times_normal_z)*projection_2
+                + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
             )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
+                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
@@ -670,44 +690,41 @@ class TripodP3Z(OffsetKinematics):
         pivot_2_y = k.pivot_2_y
         pivot_3_x = k.pivot_3_x
         pivot_3_y = k.pivot_3_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = x - part_of_span_1_x  # rod 1
-        span_1_y = y - part_of_span_1_y  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
+        span_1_x = x - part_of_span_1_x  # rod 1: known part of its vector
+        span_1_y = y - part_of_span_1_y
+        radicand_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding):
+        if not (radicand_a1 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_1_x*span_1_x + span_1_y*span_1_y))
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = x - part_of_span_2_x  # rod 2
-        span_2_y = y - part_of_span_2_y  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
+        span_2_x = x - part_of_span_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_span_2_y
+        radicand_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding):
+        if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_2_x*span_2_x + span_2_y*span_2_y))
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_x = x - part_of_span_3_x  # rod 3
-        span_3_y = y - part_of_span_3_y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
+        span_3_x = x - part_of_span_3_x  # rod 3: known part of its vector
+        span_3_y = y - part_of_span_3_y
+        radicand_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y  # quadratic equation for a3: rod 3
         # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding):
+        if not (radicand_a3 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_3_x*span_3_x + span_3_y*span_3_y))
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
-        a1 = z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
+        a1 = z + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1
         rod_1_z = z - a1
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        a2 = z + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
+        a2 = z + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
         rod_2_z = z - a2
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        a3 = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
+        a3 = z + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
             -part_of_type2_rods_coplanar
@@ -764,17 +781,17 @@ class TripodP3Z(OffsetKinematics):
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        apart_2_x = k.apart_2_x
-        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
-        apart_2_y = k.apart_2_y
-        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
-        apart_3_x = k.apart_3_x
-        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
-        apart_3_y = k.apart_3_y
-        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
         arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
+        centre_1_to_2_x = k.centre_1_to_2_x
+        centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x_times_normal_z
+        centre_1_to_2_y = k.centre_1_to_2_y
+        centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y_times_normal_z
+        centre_1_to_3_x = k.centre_1_to_3_x
+        centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x_times_normal_z
+        centre_1_to_3_y = k.centre_1_to_3_y
+        centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y_times_normal_z
         normal_z = k.normal_z
         normal_z_squared = k.normal_z_squared
         offset_a1 = k.offset_a1
@@ -783,65 +800,73 @@ class TripodP3Z(OffsetKinematics):
         one_by_arm_length = k.one_by_arm_length
         part_of_margin_rods_coplanar = k.part_of_margin_rods_coplanar
         part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
+        part_of_projection_2 = k.part_of_projection_2
+        part_of_projection_3 = k.part_of_projection_3
         pivot_1_x = k.pivot_1_x
         pivot_1_y = k.pivot_1_y
         pivot_2_x = k.pivot_2_x
         pivot_2_y = k.pivot_2_y
         pivot_3_x = k.pivot_3_x
         pivot_3_y = k.pivot_3_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        apart_2_z = a2 - a1
+        centre_1_to_2_z = a2 - a1
         a3 = axis_a3 - offset_a3
-        apart_3_z = a3 - a1
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
+        centre_1_to_3_z = a3 - a1
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
-        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
             *(
-                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
-                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+                (centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - centre_1_to_2_y_times_normal_z)*projection_3
             )
         )
         foot_y = (
             one_by_normal_square
             *(
-                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
-                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x_times_normal_z)*projection_2
+                + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
             )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
+                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        z = a1 + foot_z + normal_z*rise
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        z = a1 + foot_z + height_by_normal*normal_z
         rod_1_z = z - a1
         margin_level_1 = -one_by_arm_length*rod_1_z
         rod_2_z = z - a2
         margin_level_2 = -one_by_arm_length*rod_2_z
         rod_3_z = z - a3
         margin_level_3 = -one_by_arm_length*rod_3_z
-        x = foot_x + pivot_1_x + normal_x*rise
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
         rod_1_x = x - pivot_1_x
-        y = foot_y + pivot_1_y + normal_y*rise
+        y = foot_y + pivot_1_y + height_by_normal*normal_y
         rod_1_y = y - pivot_1_y
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
@@ -860,17 +885,17 @@ class TripodP3Z(OffsetKinematics):
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        apart_2_x = k.apart_2_x
-        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
-        apart_2_y = k.apart_2_y
-        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
-        apart_3_x = k.apart_3_x
-        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
-        apart_3_y = k.apart_3_y
-        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
         arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
+        centre_1_to_2_x = k.centre_1_to_2_x
+        centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x_times_normal_z
+        centre_1_to_2_y = k.centre_1_to_2_y
+        centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y_times_normal_z
+        centre_1_to_3_x = k.centre_1_to_3_x
+        centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x_times_normal_z
+        centre_1_to_3_y = k.centre_1_to_3_y
+        centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y_times_normal_z
         normal_z = k.normal_z
         normal_z_squared = k.normal_z_squared
         offset_a1 = k.offset_a1
@@ -878,8 +903,8 @@ class TripodP3Z(OffsetKinematics):
         offset_a3 = k.offset_a3
         part_of_determinant_divisor = k.part_of_determinant_divisor
         part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
+        part_of_projection_2 = k.part_of_projection_2
+        part_of_projection_3 = k.part_of_projection_3
         part_of_slope_1_by_x = k.part_of_slope_1_by_x
         part_of_slope_1_by_y = k.part_of_slope_1_by_y
         part_of_slope_2_by_x = k.part_of_slope_2_by_x
@@ -888,52 +913,60 @@ class TripodP3Z(OffsetKinematics):
         part_of_slope_3_by_y = k.part_of_slope_3_by_y
         pivot_1_x = k.pivot_1_x
         pivot_1_y = k.pivot_1_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        apart_2_z = a2 - a1
+        centre_1_to_2_z = a2 - a1
         a3 = axis_a3 - offset_a3
-        apart_3_z = a3 - a1
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
+        centre_1_to_3_z = a3 - a1
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
-        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
             *(
-                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
-                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+                (centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - centre_1_to_2_y_times_normal_z)*projection_3
             )
         )
         foot_y = (
             one_by_normal_square
             *(
-                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
-                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x_times_normal_z)*projection_2
+                + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
             )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
+                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
         slope_1_by_x = 2.0*(x - part_of_slope_1_by_x)
-        y = foot_y + pivot_1_y + normal_y*rise
+        y = foot_y + pivot_1_y + height_by_normal*normal_y
         slope_1_by_y = 2.0*(y - part_of_slope_1_by_y)
-        z = a1 + foot_z + normal_z*rise
+        z = a1 + foot_z + height_by_normal*normal_z
         slope_1_by_z = 2.0*(z - a1)
         slope_2_by_y = 2.0*(y - part_of_slope_2_by_y)
         slope_2_by_z = 2.0*(z - a2)
@@ -944,7 +977,7 @@ class TripodP3Z(OffsetKinematics):
         slope_3_by_x = 2.0*(x - part_of_slope_3_by_x)
         part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
         part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
-        # of the closure by the position: zero in a type 2 singularity
+        # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
             part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
         )
@@ -1005,50 +1038,47 @@ class TripodP3Z(OffsetKinematics):
         pivot_2_y = k.pivot_2_y
         pivot_3_x = k.pivot_3_x
         pivot_3_y = k.pivot_3_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        flange_x = x - point_x  # the flange behind the point
-        span_1_x = flange_x - part_of_span_1_x  # rod 1
-        flange_y = y - point_y  # the flange behind the point
-        span_1_y = flange_y - part_of_span_1_y  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
+        flange_x = x - point_x  # position of the flange: the point less its offset
+        span_1_x = flange_x - part_of_span_1_x  # rod 1: known part of its vector
+        flange_y = y - point_y  # position of the flange: the point less its offset
+        span_1_y = flange_y - part_of_span_1_y
+        radicand_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding):
+        if not (radicand_a1 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_1_x*span_1_x + span_1_y*span_1_y))
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = flange_x - part_of_span_2_x  # rod 2
-        span_2_y = flange_y - part_of_span_2_y  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
+        span_2_x = flange_x - part_of_span_2_x  # rod 2: known part of its vector
+        span_2_y = flange_y - part_of_span_2_y
+        radicand_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding):
+        if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_2_x*span_2_x + span_2_y*span_2_y))
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_x = flange_x - part_of_span_3_x  # rod 3
-        span_3_y = flange_y - part_of_span_3_y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
+        span_3_x = flange_x - part_of_span_3_x  # rod 3: known part of its vector
+        span_3_y = flange_y - part_of_span_3_y
+        radicand_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y  # quadratic equation for a3: rod 3
         # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding):
+        if not (radicand_a3 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_3_x*span_3_x + span_3_y*span_3_y))
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         rod_1_x = flange_x - pivot_1_x
         rod_1_y = flange_y - pivot_1_y
-        flange_z = z - point_z  # the flange behind the point
-        a1 = flange_z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
+        flange_z = z - point_z  # position of the flange: the point less its offset
+        a1 = flange_z + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1
         rod_1_z = flange_z - a1
         rod_2_x = flange_x - pivot_2_x
         rod_2_y = flange_y - pivot_2_y
-        a2 = flange_z + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
+        a2 = flange_z + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
         rod_2_z = flange_z - a2
         rod_3_x = flange_x - pivot_3_x
         rod_3_y = flange_y - pivot_3_y
-        a3 = flange_z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
+        a3 = flange_z + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_z = flange_z - a3
         type2_rods_coplanar = (
             part_of_type2_rods_coplanar
@@ -1072,17 +1102,17 @@ class TripodP3Z(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        apart_2_x = k.apart_2_x
-        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
-        apart_2_y = k.apart_2_y
-        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
-        apart_3_x = k.apart_3_x
-        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
-        apart_3_y = k.apart_3_y
-        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
         arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
+        centre_1_to_2_x = k.centre_1_to_2_x
+        centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x_times_normal_z
+        centre_1_to_2_y = k.centre_1_to_2_y
+        centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y_times_normal_z
+        centre_1_to_3_x = k.centre_1_to_3_x
+        centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x_times_normal_z
+        centre_1_to_3_y = k.centre_1_to_3_y
+        centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y_times_normal_z
         normal_z = k.normal_z
         normal_z_squared = k.normal_z_squared
         offset_a1 = k.offset_a1
@@ -1090,50 +1120,58 @@ class TripodP3Z(OffsetKinematics):
         offset_a3 = k.offset_a3
         one_by_arm_length = k.one_by_arm_length
         part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
-        # numbers of reasonable size
+        part_of_projection_2 = k.part_of_projection_2
+        part_of_projection_3 = k.part_of_projection_3
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        apart_2_z = a2 - a1
+        centre_1_to_2_z = a2 - a1
         a3 = axis_a3 - offset_a3
-        apart_3_z = a3 - a1
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
+        centre_1_to_3_z = a3 - a1
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
-        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
             *(
-                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
-                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
+                (centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - centre_1_to_2_y_times_normal_z)*projection_3
             )
         )
         foot_y = (
             one_by_normal_square
             *(
-                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
-                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x_times_normal_z)*projection_2
+                + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
             )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
+                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        flange_z = a1 + foot_z + normal_z*rise
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        flange_z = a1 + foot_z + height_by_normal*normal_z
         branch_carriage_1 = (a1 - flange_z)*one_by_arm_length
         branch_carriage_2 = (a2 - flange_z)*one_by_arm_length
         branch_carriage_3 = (a3 - flange_z)*one_by_arm_length

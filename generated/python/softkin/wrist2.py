@@ -239,35 +239,35 @@ class Wrist2(OrientationKinematics):
             raise self._refusal("upper_b: B: upper limit of the axis, both 0: no limit", upper_b=upper_b)
         if not ((lower_a < upper_a) or (abs(lower_a) + abs(upper_a) <= 0.0)):
             raise self._refusal("lower_a below upper_a, or both 0", lower_a=lower_a, upper_a=upper_a)
-        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: no limit
+        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: whether it has no limits
         effective_lower_a = lower_a
         effective_upper_a = upper_a
         tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
         lowest_a = -1e12 if unlimited_a else effective_lower_a - tolerance_a
         highest_a = 1e12 if unlimited_a else effective_upper_a + tolerance_a
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a = (not unlimited_a) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
         mid_a = 0.5*effective_lower_a + 0.5*effective_upper_a
         if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
             raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
-        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: no limit
+        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: whether it has no limits
         effective_lower_b = lower_b
         effective_upper_b = upper_b
         tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
         lowest_b = -1e12 if unlimited_b else effective_lower_b - tolerance_b
         highest_b = 1e12 if unlimited_b else effective_upper_b + tolerance_b
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_b = (not unlimited_b) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
         mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
-        machine_scale = 1.0  # a length of the machine
-        # as much may turn with the flange
+        machine_scale = 1.0  # characteristic length of the machine
+        # offsets up to this are not noticed
         unnoticed_shift = (
             1e-9*abs(roll_axis_offset_x) + 1e-9*abs(roll_axis_offset_y) + 1e-9*abs(roll_axis_offset_z)
             + 1e-9*abs(tool_length)
         )
-        # between the axes: only a flange that keeps its orientation tells where that is
+        # offset between the axes of the wrist: allowed where the flange keeps its orientation
         wrist_offset = abs(roll_axis_offset_x)
-        unmet_offset = abs(roll_axis_offset_y)  # turns in a way that nothing commands
+        unmet_offset = abs(roll_axis_offset_y)  # part of the tool in directions that are not commanded
         tool_length_times_tool_side = tool_side*tool_length
         return Constants(
             tool_length=tool_length, roll_axis_offset_x=roll_axis_offset_x, roll_axis_offset_y=roll_axis_offset_y,
@@ -291,7 +291,7 @@ class Wrist2(OrientationKinematics):
         roll_axis_offset_z = k.roll_axis_offset_z
         tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
@@ -323,7 +323,7 @@ class Wrist2(OrientationKinematics):
         offset_a = k.offset_a
         offset_b = k.offset_b
         tool_side = k.tool_side
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
@@ -355,13 +355,13 @@ class Wrist2(OrientationKinematics):
         single_a = k.single_a
         single_b = k.single_b
         tool_side = k.tool_side
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
+        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_a > 1e-11:
             direction_x_a = sigma_roll*r13_of_a
             direction_y_a = sigma_roll*r23_of_a
@@ -369,15 +369,15 @@ class Wrist2(OrientationKinematics):
             free_a = (ref_a - offset_a)*DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
-        open_a = mid_a if single_a else ref_a  # A: where its turn is open
+        open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
         near_a = 360.0*(turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
-        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0)/DEGREE  # A: its turn
+        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0)/DEGREE  # A: whole turns added
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
         a_radius_of_b = sigma_roll*radius_a
-        open_b = mid_b if single_b else ref_b  # B: where its turn is open
+        open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
         near_b = 360.0*(turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
-        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0)/DEGREE  # B: its turn
+        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0)/DEGREE  # B: whole turns added
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
         return (axis_a, axis_b)
@@ -419,7 +419,7 @@ class Wrist2(OrientationKinematics):
         axis_a, axis_b = axes
         k = self._constants
         offset_b = k.offset_b
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         b = DEGREE*(axis_b - offset_b)
@@ -433,7 +433,7 @@ class Wrist2(OrientationKinematics):
         offset_a = k.offset_a
         offset_b = k.offset_b
         tool_side = k.tool_side
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         b = DEGREE*(axis_b - offset_b)
@@ -462,7 +462,7 @@ class Wrist2(OrientationKinematics):
         roll_axis_offset_z = k.roll_axis_offset_z
         tool_length_times_tool_side = k.tool_length_times_tool_side
         tool_side = k.tool_side
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
@@ -498,12 +498,13 @@ class Wrist2(OrientationKinematics):
         unmet_offset = k.unmet_offset
         unnoticed_shift = k.unnoticed_shift
         wrist_offset = k.wrist_offset
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
             return Status.BAD_INPUT
-        flange_along = flange_axis_z*roll_axis_offset_z  # what the flange holds, along the axis that it turns about
+        # the flange's part along the axis about which the flange turns
+        flange_along = flange_axis_z*roll_axis_offset_z
         part_of_flange_offset = roll_axis_offset_z - flange_along*flange_axis_z
-        # off the axis that the flange turns about
+        # distance of the flange's part from the axis about which the flange turns
         flange_offset = root(
             part_of_flange_offset*part_of_flange_offset
             + flange_along*flange_along*(flange_axis_x*flange_axis_x + flange_axis_y*flange_axis_y)
@@ -523,13 +524,14 @@ class Wrist2(OrientationKinematics):
         k = self._constants
         roll_axis_offset_z = k.roll_axis_offset_z
         tool_length_times_tool_side = k.tool_length_times_tool_side
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
             and -1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9
         ):
             return Status.BAD_INPUT
-        flange_along = flange_axis_z*roll_axis_offset_z  # what the flange holds, along the axis that it turns about
+        # the flange's part along the axis about which the flange turns
+        flange_along = flange_axis_z*roll_axis_offset_z
         return (
             base_axis_x*flange_along + r13*tool_length_times_tool_side,
             base_axis_y*flange_along + r23*tool_length_times_tool_side,

@@ -240,38 +240,38 @@ class Wrist3(OrientationKinematics):
             raise self._refusal("upper_c: C: upper limit of the axis, both 0: no limit", upper_c=upper_c)
         if not ((lower_a < upper_a) or (abs(lower_a) + abs(upper_a) <= 0.0)):
             raise self._refusal("lower_a below upper_a, or both 0", lower_a=lower_a, upper_a=upper_a)
-        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: no limit
+        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: whether it has no limits
         effective_lower_a = lower_a
         effective_upper_a = upper_a
         tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
         lowest_a = -1e12 if unlimited_a else effective_lower_a - tolerance_a
         highest_a = 1e12 if unlimited_a else effective_upper_a + tolerance_a
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a = (not unlimited_a) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
         mid_a = 0.5*effective_lower_a + 0.5*effective_upper_a
         if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
             raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
-        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: no limit
+        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: whether it has no limits
         effective_lower_b = lower_b
         effective_upper_b = upper_b
         tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
         lowest_b = -1e12 if unlimited_b else effective_lower_b - tolerance_b
         highest_b = 1e12 if unlimited_b else effective_upper_b + tolerance_b
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_b = (not unlimited_b) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
         mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
         if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
             raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
-        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: no limit
+        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: whether it has no limits
         effective_lower_c = lower_c
         effective_upper_c = upper_c
         tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
         lowest_c = -1e12 if unlimited_c else effective_lower_c - tolerance_c
         highest_c = 1e12 if unlimited_c else effective_upper_c + tolerance_c
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_c = (not unlimited_c) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
-        machine_scale = 1.0  # a length of the machine
+        machine_scale = 1.0  # characteristic length of the machine
         return Constants(
             tool_offset_x=tool_offset_x, tool_offset_y=tool_offset_y, tool_offset_z=tool_offset_z, offset_a=offset_a,
             offset_b=offset_b, offset_c=offset_c, check_limits=check_limits, lower_a=effective_lower_a,
@@ -292,7 +292,7 @@ class Wrist3(OrientationKinematics):
         tool_offset_x = k.tool_offset_x
         tool_offset_y = k.tool_offset_y
         tool_offset_z = k.tool_offset_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         b = DEGREE*(axis_b - offset_b)
@@ -330,7 +330,7 @@ class Wrist3(OrientationKinematics):
         offset_a = k.offset_a
         offset_b = k.offset_b
         offset_c = k.offset_c
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         b = DEGREE*(axis_b - offset_b)
@@ -372,11 +372,11 @@ class Wrist3(OrientationKinematics):
         single_a = k.single_a
         single_b = k.single_b
         single_c = k.single_c
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9 and -1e9 <= ref_c <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
-        # c: polar angle in the r31 and r32 equations; its reference where it is free
+        radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
+        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
         if radius_c > 1e-11:
             direction_x_c = sigma_hand*r31
             direction_y_c = -sigma_hand*r32
@@ -386,20 +386,20 @@ class Wrist3(OrientationKinematics):
             direction_y_c = sin(free_c)
         scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
         direction_y_a = -direction_x_c*r12 - direction_y_c*r11
-        open_a = mid_a if single_a else ref_a  # A: where its turn is open
+        open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
         near_a = 360.0*(turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
-        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0)/DEGREE  # A: its turn
+        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0)/DEGREE  # A: whole turns added
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
         c_radius_of_b = sigma_hand*radius_c
-        open_b = mid_b if single_b else ref_b  # B: where its turn is open
+        open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
         near_b = 360.0*(turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
-        axis_b = offset_b + arctan2(c_radius_of_b, r33 + 0.0)/DEGREE  # B: its turn
+        axis_b = offset_b + arctan2(c_radius_of_b, r33 + 0.0)/DEGREE  # B: whole turns added
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
-        open_c = mid_c if single_c else ref_c  # C: where its turn is open
+        open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
         near_c = 360.0*(turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         return (axis_a, axis_b, axis_c)
@@ -454,7 +454,7 @@ class Wrist3(OrientationKinematics):
         axis_a, axis_b, axis_c = axes
         k = self._constants
         offset_b = k.offset_b
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         b = DEGREE*(axis_b - offset_b)
@@ -467,7 +467,7 @@ class Wrist3(OrientationKinematics):
         k = self._constants
         offset_a = k.offset_a
         offset_b = k.offset_b
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
@@ -494,7 +494,7 @@ class Wrist3(OrientationKinematics):
         tool_offset_x = k.tool_offset_x
         tool_offset_y = k.tool_offset_y
         tool_offset_z = k.tool_offset_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)

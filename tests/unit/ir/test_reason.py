@@ -95,7 +95,7 @@ def test_who_is_told_nothing_computes_nothing() -> None:
 def test_the_reader_is_told_the_reason_or_the_note() -> None:
     assert refusing(X).comment == "a: out of reach"
     assert replace(refusing(X), note="limits of A").comment == "limits of A"
-    assert Let(A, X, "by the sum", turn_of="A1").comment == "by the sum; A1: its turn"
+    assert Let(A, X, "by the sum", turn_of="A1").comment == "by the sum; A1: whole turns added"
 
 
 def test_every_sentence_takes_one_name() -> None:

@@ -49,13 +49,14 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         _, _, _, ref_a4, ref_a5, ref_a6 = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a4 <= 1e9
             and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9
         ):
             return 2*(2,)
-        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
+        # wrist centre: the point in which the last axes intersect
+        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
         axis_a1 = offset_a1 + wrist_x
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
@@ -70,8 +71,8 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A3
         if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
             return 2*(3,)
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # polar coordinates: the radius at angle a4
+        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
         if radius_a4 > 1e-11:
             direction_x_a4_upright = r33
             direction_y_a4_upright = r13
@@ -81,19 +82,20 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a4_upright = sin(free_a4)
             direction_x_a4_flipped = direction_x_a4_upright
             direction_y_a4_flipped = direction_y_a4_upright
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
-        # A4: its turn
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
+        # A4: whole turns added
         axis_a4_upright = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_upright - open_a4 < 179.999999999:
             axis_a4_upright = nearest_period(axis_a4_upright, open_a4)
-        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
-        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4 + 0.0)/DEGREE  # A5: its turn
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
+        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4 + 0.0)/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5_upright - open_a5 < 179.999999999:
             axis_a5_upright = nearest_period(axis_a5_upright, open_a5)
         scaled_r11_from_a4 = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
         direction_y_a6 = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
-        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
-        axis_a6_upright = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0)/DEGREE  # A6: its turn
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
+        # A6: whole turns added
+        axis_a6_upright = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0)/DEGREE
         if not -180.000000001 <= axis_a6_upright - open_a6 < 179.999999999:
             axis_a6_upright = nearest_period(axis_a6_upright, open_a6)
         # limits of A4, limits of A5, limits of A6
@@ -116,13 +118,13 @@ def unrolled(k: Constants) -> Unrolled:
                     direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31 + 0.0,
                 )/DEGREE
             )
-        axis_a4_flipped = direction_of_axis_a4  # A4: its turn
+        axis_a4_flipped = direction_of_axis_a4  # A4: whole turns added
         if not -180.000000001 <= axis_a4_flipped - open_a4 < 179.999999999:
             axis_a4_flipped = nearest_period(axis_a4_flipped, open_a4)
-        axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4 + 0.0)/DEGREE  # A5: its turn
+        axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4 + 0.0)/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5_flipped - open_a5 < 179.999999999:
             axis_a5_flipped = nearest_period(axis_a5_flipped, open_a5)
-        axis_a6_flipped = direction_of_axis_a6  # A6: its turn
+        axis_a6_flipped = direction_of_axis_a6  # A6: whole turns added
         if not -180.000000001 <= axis_a6_flipped - open_a6 < 179.999999999:
             axis_a6_flipped = nearest_period(axis_a6_flipped, open_a6)
         # limits of A4, limits of A5, limits of A6
@@ -150,14 +152,15 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         _, _, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
-        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
+        # wrist centre: the point in which the last axes intersect
+        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # polar coordinates: the radius at angle a4
+        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
         if radius_a4 > 1e-11:
             direction_x_a4_upright = r33
             direction_y_a4_upright = r13
@@ -198,11 +201,12 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         (sigma_wrist,) = signs
         _, _, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
-        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
+        # wrist centre: the point in which the last axes intersect
+        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # polar coordinates: the radius at angle a4
+        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
         if radius_a4 > 1e-11:
             direction_x_a4 = sigma_wrist*r33
             direction_y_a4 = sigma_wrist*r13

@@ -26,17 +26,18 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         (ref_c,) = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_c <= 1e9):
             return (2,)
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return (3,)
-        open_c = mid_c if single_c else ref_c  # C: where its turn is open
-        axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: its turn
+        open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
+        axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c - open_c < 179.999999999:
             axis_c = nearest_period(axis_c, open_c)
         # limits of C
@@ -49,7 +50,8 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), _) = frame
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -62,7 +64,8 @@ def unrolled(k: Constants) -> Unrolled:
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), _) = frame
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way

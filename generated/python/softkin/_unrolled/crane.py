@@ -34,14 +34,14 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         _, ref_theta, ref_phi = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_phi <= 1e9
             and -1e9 <= ref_theta <= 1e9
         ):
             return (2,)
-        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
-        # its reference where it is free
+        radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
+        # in the singularity: the angle of the reference
         if radius_theta > machine_scale_times_free_angle_2:
             direction_x_theta = x
             direction_y_theta = y
@@ -49,19 +49,21 @@ def unrolled(k: Constants) -> Unrolled:
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        open_theta = mid_theta if single_theta else ref_theta  # Theta: where its turn is open
-        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
+        # Theta: without a commanded turn, the value nearest to this
+        open_theta = mid_theta if single_theta else ref_theta
+        # Theta: whole turns added
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE
         if not -180.000000001 <= axis_theta - open_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, open_theta)
         # limits of Theta
         if not (axis_theta >= lowest_theta and axis_theta <= highest_theta):
             return (3,)
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
         axis_r = offset_r + radius_phi
         # limits of R
         if not (axis_r >= lowest_r and axis_r <= highest_r):
             return (3,)
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_phi > machine_scale_times_free_angle_2:
             direction_x_phi = z
             direction_y_phi = radius_theta
@@ -81,9 +83,9 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         _, ref_theta, ref_phi = 3*(0.0,) if reference is None else reference
-        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        # its reference where it is free
+        radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
+        # in the singularity: the angle of the reference
         if radius_theta > machine_scale_times_free_angle_2:
             direction_x_theta = x
             direction_y_theta = y
@@ -91,7 +93,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_phi > machine_scale_times_free_angle_2:
             direction_x_phi = z
             direction_y_phi = radius_theta
@@ -110,9 +112,9 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         _, ref_theta, ref_phi = 3*(0.0,) if reference is None else reference
-        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        # its reference where it is free
+        radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
+        # in the singularity: the angle of the reference
         if radius_theta > machine_scale_times_free_angle_2:
             direction_x_theta = x
             direction_y_theta = y
@@ -120,7 +122,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_phi > machine_scale_times_free_angle_2:
             direction_x_phi = z
             direction_y_phi = radius_theta

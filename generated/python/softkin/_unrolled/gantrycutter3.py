@@ -37,18 +37,19 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         _, _, _, ref_r = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_r <= 1e9):
             return (2,)
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return (3,)
         direction_y_r = direction_r*heading_across
-        open_r = mid_r if single_r else ref_r  # R: where its turn is open
-        axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0)/DEGREE  # R: its turn
+        open_r = mid_r if single_r else ref_r  # R: without a commanded turn, the value nearest to this
+        axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0)/DEGREE  # R: whole turns added
         if not -180.000000001 <= axis_r - open_r < 179.999999999:
             axis_r = nearest_period(axis_r, open_r)
         # limits of R
@@ -73,7 +74,8 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -89,7 +91,8 @@ def unrolled(k: Constants) -> Unrolled:
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way

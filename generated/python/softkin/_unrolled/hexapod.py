@@ -118,100 +118,100 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return (2,)
         platform_1_z_times_r13 = platform_1_z*r13
         platform_1_x_times_r11_plus_platform_1_y_times_r12 = platform_1_x*r11 + platform_1_y*r12
-        span_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13 + x - base_1_x  # rod 1
+        # rod 1: known part of its vector
+        span_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13 + x - base_1_x
         platform_1_z_times_r23 = platform_1_z*r23
         platform_1_x_times_r21_plus_platform_1_y_times_r22 = platform_1_x*r21 + platform_1_y*r22
-        span_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23 + y - base_1_y  # rod 1
+        span_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23 + y - base_1_y
         platform_1_z_times_r33 = platform_1_z*r33
         platform_1_x_times_r31_plus_platform_1_y_times_r32 = platform_1_x*r31 + platform_1_y*r32
-        span_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33 + z - base_1_z  # rod 1
-        # l1: quadratic in the rod 1 equation
-        root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
-        l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
+        span_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33 + z - base_1_z
+        radicand_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z  # quadratic equation for l1: rod 1
+        l1 = (sqrt(radicand_l1) if radicand_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link_2):
             return (3,)
         platform_2_z_times_r13 = platform_2_z*r13
         platform_2_x_times_r11_plus_platform_2_y_times_r12 = platform_2_x*r11 + platform_2_y*r12
-        span_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13 + x - base_2_x  # rod 2
+        # rod 2: known part of its vector
+        span_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13 + x - base_2_x
         platform_2_z_times_r23 = platform_2_z*r23
         platform_2_x_times_r21_plus_platform_2_y_times_r22 = platform_2_x*r21 + platform_2_y*r22
-        span_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23 + y - base_2_y  # rod 2
+        span_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23 + y - base_2_y
         platform_2_z_times_r33 = platform_2_z*r33
         platform_2_x_times_r31_plus_platform_2_y_times_r32 = platform_2_x*r31 + platform_2_y*r32
-        span_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33 + z - base_2_z  # rod 2
-        # l2: quadratic in the rod 2 equation
-        root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
-        l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
+        span_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33 + z - base_2_z
+        radicand_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z  # quadratic equation for l2: rod 2
+        l2 = (sqrt(radicand_l2) if radicand_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link_2):
             return (3,)
         platform_3_z_times_r13 = platform_3_z*r13
         platform_3_x_times_r11_plus_platform_3_y_times_r12 = platform_3_x*r11 + platform_3_y*r12
-        span_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13 + x - base_3_x  # rod 3
+        # rod 3: known part of its vector
+        span_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13 + x - base_3_x
         platform_3_z_times_r23 = platform_3_z*r23
         platform_3_x_times_r21_plus_platform_3_y_times_r22 = platform_3_x*r21 + platform_3_y*r22
-        span_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23 + y - base_3_y  # rod 3
+        span_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23 + y - base_3_y
         platform_3_z_times_r33 = platform_3_z*r33
         platform_3_x_times_r31_plus_platform_3_y_times_r32 = platform_3_x*r31 + platform_3_y*r32
-        span_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33 + z - base_3_z  # rod 3
-        # l3: quadratic in the rod 3 equation
-        root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
-        l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
+        span_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33 + z - base_3_z
+        radicand_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z  # quadratic equation for l3: rod 3
+        l3 = (sqrt(radicand_l3) if radicand_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link_2):
             return (3,)
         platform_4_z_times_r13 = platform_4_z*r13
         platform_4_x_times_r11_plus_platform_4_y_times_r12 = platform_4_x*r11 + platform_4_y*r12
-        span_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13 + x - base_4_x  # rod 4
+        # rod 4: known part of its vector
+        span_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13 + x - base_4_x
         platform_4_z_times_r23 = platform_4_z*r23
         platform_4_x_times_r21_plus_platform_4_y_times_r22 = platform_4_x*r21 + platform_4_y*r22
-        span_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23 + y - base_4_y  # rod 4
+        span_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23 + y - base_4_y
         platform_4_z_times_r33 = platform_4_z*r33
         platform_4_x_times_r31_plus_platform_4_y_times_r32 = platform_4_x*r31 + platform_4_y*r32
-        span_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33 + z - base_4_z  # rod 4
-        # l4: quadratic in the rod 4 equation
-        root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
-        l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
+        span_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33 + z - base_4_z
+        radicand_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z  # quadratic equation for l4: rod 4
+        l4 = (sqrt(radicand_l4) if radicand_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link_2):
             return (3,)
         platform_5_z_times_r13 = platform_5_z*r13
         platform_5_x_times_r11_plus_platform_5_y_times_r12 = platform_5_x*r11 + platform_5_y*r12
-        span_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13 + x - base_5_x  # rod 5
+        # rod 5: known part of its vector
+        span_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13 + x - base_5_x
         platform_5_z_times_r23 = platform_5_z*r23
         platform_5_x_times_r21_plus_platform_5_y_times_r22 = platform_5_x*r21 + platform_5_y*r22
-        span_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23 + y - base_5_y  # rod 5
+        span_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23 + y - base_5_y
         platform_5_z_times_r33 = platform_5_z*r33
         platform_5_x_times_r31_plus_platform_5_y_times_r32 = platform_5_x*r31 + platform_5_y*r32
-        span_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33 + z - base_5_z  # rod 5
-        # l5: quadratic in the rod 5 equation
-        root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
-        l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
+        span_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33 + z - base_5_z
+        radicand_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z  # quadratic equation for l5: rod 5
+        l5 = (sqrt(radicand_l5) if radicand_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link_2):
             return (3,)
         platform_6_z_times_r13 = platform_6_z*r13
         platform_6_x_times_r11_plus_platform_6_y_times_r12 = platform_6_x*r11 + platform_6_y*r12
-        span_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13 + x - base_6_x  # rod 6
+        # rod 6: known part of its vector
+        span_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13 + x - base_6_x
         platform_6_z_times_r23 = platform_6_z*r23
         platform_6_x_times_r21_plus_platform_6_y_times_r22 = platform_6_x*r21 + platform_6_y*r22
-        span_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23 + y - base_6_y  # rod 6
+        span_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23 + y - base_6_y
         platform_6_z_times_r33 = platform_6_z*r33
         platform_6_x_times_r31_plus_platform_6_y_times_r32 = platform_6_x*r31 + platform_6_y*r32
-        span_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33 + z - base_6_z  # rod 6
-        # l6: quadratic in the rod 6 equation
-        root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
-        l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
+        span_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33 + z - base_6_z
+        radicand_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z  # quadratic equation for l6: rod 6
+        l6 = (sqrt(radicand_l6) if radicand_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link_2):
             return (3,)
-        # leg 1: its direction, and the moment of that about the platform's origin
+        # leg 1 as a line: unit vector, and its moment about the platform's origin
         divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
@@ -220,7 +220,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 1: its joint on the base bends beyond its cone
         if not (cos_base_lean_1 >= least_cos_base):
             return (3,)
-        # leg 2: its direction, and the moment of that about the platform's origin
+        # leg 2 as a line: unit vector, and its moment about the platform's origin
         divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
@@ -229,7 +229,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 2: its joint on the base bends beyond its cone
         if not (cos_base_lean_2 >= least_cos_base):
             return (3,)
-        # leg 3: its direction, and the moment of that about the platform's origin
+        # leg 3 as a line: unit vector, and its moment about the platform's origin
         divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
@@ -238,7 +238,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 3: its joint on the base bends beyond its cone
         if not (cos_base_lean_3 >= least_cos_base):
             return (3,)
-        # leg 4: its direction, and the moment of that about the platform's origin
+        # leg 4 as a line: unit vector, and its moment about the platform's origin
         divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
@@ -247,7 +247,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 4: its joint on the base bends beyond its cone
         if not (cos_base_lean_4 >= least_cos_base):
             return (3,)
-        # leg 5: its direction, and the moment of that about the platform's origin
+        # leg 5 as a line: unit vector, and its moment about the platform's origin
         divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
@@ -256,7 +256,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 5: its joint on the base bends beyond its cone
         if not (cos_base_lean_5 >= least_cos_base):
             return (3,)
-        # leg 6: its direction, and the moment of that about the platform's origin
+        # leg 6 as a line: unit vector, and its moment about the platform's origin
         divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
@@ -325,7 +325,7 @@ def unrolled(k: Constants) -> Unrolled:
         arm_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23
         arm_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33
         arm_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13
-        # margin of the platform
+        # determinant of the legs as lines: zero in a type 2 singularity
         (determinant,) = solve(
             (
                 (
@@ -397,95 +397,95 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         platform_1_z_times_r13 = platform_1_z*r13
         platform_1_x_times_r11_plus_platform_1_y_times_r12 = platform_1_x*r11 + platform_1_y*r12
-        span_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13 + x - base_1_x  # rod 1
+        # rod 1: known part of its vector
+        span_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13 + x - base_1_x
         platform_1_z_times_r23 = platform_1_z*r23
         platform_1_x_times_r21_plus_platform_1_y_times_r22 = platform_1_x*r21 + platform_1_y*r22
-        span_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23 + y - base_1_y  # rod 1
+        span_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23 + y - base_1_y
         platform_1_z_times_r33 = platform_1_z*r33
         platform_1_x_times_r31_plus_platform_1_y_times_r32 = platform_1_x*r31 + platform_1_y*r32
-        span_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33 + z - base_1_z  # rod 1
-        # l1: quadratic in the rod 1 equation
-        root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
-        l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
+        span_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33 + z - base_1_z
+        radicand_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z  # quadratic equation for l1: rod 1
+        l1 = (sqrt(radicand_l1) if radicand_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link_2):
             return (None,)
         platform_2_z_times_r13 = platform_2_z*r13
         platform_2_x_times_r11_plus_platform_2_y_times_r12 = platform_2_x*r11 + platform_2_y*r12
-        span_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13 + x - base_2_x  # rod 2
+        # rod 2: known part of its vector
+        span_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13 + x - base_2_x
         platform_2_z_times_r23 = platform_2_z*r23
         platform_2_x_times_r21_plus_platform_2_y_times_r22 = platform_2_x*r21 + platform_2_y*r22
-        span_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23 + y - base_2_y  # rod 2
+        span_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23 + y - base_2_y
         platform_2_z_times_r33 = platform_2_z*r33
         platform_2_x_times_r31_plus_platform_2_y_times_r32 = platform_2_x*r31 + platform_2_y*r32
-        span_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33 + z - base_2_z  # rod 2
-        # l2: quadratic in the rod 2 equation
-        root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
-        l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
+        span_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33 + z - base_2_z
+        radicand_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z  # quadratic equation for l2: rod 2
+        l2 = (sqrt(radicand_l2) if radicand_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link_2):
             return (None,)
         platform_3_z_times_r13 = platform_3_z*r13
         platform_3_x_times_r11_plus_platform_3_y_times_r12 = platform_3_x*r11 + platform_3_y*r12
-        span_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13 + x - base_3_x  # rod 3
+        # rod 3: known part of its vector
+        span_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13 + x - base_3_x
         platform_3_z_times_r23 = platform_3_z*r23
         platform_3_x_times_r21_plus_platform_3_y_times_r22 = platform_3_x*r21 + platform_3_y*r22
-        span_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23 + y - base_3_y  # rod 3
+        span_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23 + y - base_3_y
         platform_3_z_times_r33 = platform_3_z*r33
         platform_3_x_times_r31_plus_platform_3_y_times_r32 = platform_3_x*r31 + platform_3_y*r32
-        span_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33 + z - base_3_z  # rod 3
-        # l3: quadratic in the rod 3 equation
-        root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
-        l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
+        span_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33 + z - base_3_z
+        radicand_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z  # quadratic equation for l3: rod 3
+        l3 = (sqrt(radicand_l3) if radicand_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link_2):
             return (None,)
         platform_4_z_times_r13 = platform_4_z*r13
         platform_4_x_times_r11_plus_platform_4_y_times_r12 = platform_4_x*r11 + platform_4_y*r12
-        span_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13 + x - base_4_x  # rod 4
+        # rod 4: known part of its vector
+        span_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13 + x - base_4_x
         platform_4_z_times_r23 = platform_4_z*r23
         platform_4_x_times_r21_plus_platform_4_y_times_r22 = platform_4_x*r21 + platform_4_y*r22
-        span_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23 + y - base_4_y  # rod 4
+        span_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23 + y - base_4_y
         platform_4_z_times_r33 = platform_4_z*r33
         platform_4_x_times_r31_plus_platform_4_y_times_r32 = platform_4_x*r31 + platform_4_y*r32
-        span_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33 + z - base_4_z  # rod 4
-        # l4: quadratic in the rod 4 equation
-        root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
-        l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
+        span_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33 + z - base_4_z
+        radicand_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z  # quadratic equation for l4: rod 4
+        l4 = (sqrt(radicand_l4) if radicand_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link_2):
             return (None,)
         platform_5_z_times_r13 = platform_5_z*r13
         platform_5_x_times_r11_plus_platform_5_y_times_r12 = platform_5_x*r11 + platform_5_y*r12
-        span_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13 + x - base_5_x  # rod 5
+        # rod 5: known part of its vector
+        span_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13 + x - base_5_x
         platform_5_z_times_r23 = platform_5_z*r23
         platform_5_x_times_r21_plus_platform_5_y_times_r22 = platform_5_x*r21 + platform_5_y*r22
-        span_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23 + y - base_5_y  # rod 5
+        span_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23 + y - base_5_y
         platform_5_z_times_r33 = platform_5_z*r33
         platform_5_x_times_r31_plus_platform_5_y_times_r32 = platform_5_x*r31 + platform_5_y*r32
-        span_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33 + z - base_5_z  # rod 5
-        # l5: quadratic in the rod 5 equation
-        root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
-        l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
+        span_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33 + z - base_5_z
+        radicand_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z  # quadratic equation for l5: rod 5
+        l5 = (sqrt(radicand_l5) if radicand_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link_2):
             return (None,)
         platform_6_z_times_r13 = platform_6_z*r13
         platform_6_x_times_r11_plus_platform_6_y_times_r12 = platform_6_x*r11 + platform_6_y*r12
-        span_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13 + x - base_6_x  # rod 6
+        # rod 6: known part of its vector
+        span_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13 + x - base_6_x
         platform_6_z_times_r23 = platform_6_z*r23
         platform_6_x_times_r21_plus_platform_6_y_times_r22 = platform_6_x*r21 + platform_6_y*r22
-        span_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23 + y - base_6_y  # rod 6
+        span_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23 + y - base_6_y
         platform_6_z_times_r33 = platform_6_z*r33
         platform_6_x_times_r31_plus_platform_6_y_times_r32 = platform_6_x*r31 + platform_6_y*r32
-        span_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33 + z - base_6_z  # rod 6
-        # l6: quadratic in the rod 6 equation
-        root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
-        l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
+        span_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33 + z - base_6_z
+        radicand_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z  # quadratic equation for l6: rod 6
+        l6 = (sqrt(radicand_l6) if radicand_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link_2):
             return (None,)
-        # leg 1: its direction, and the moment of that about the platform's origin
+        # leg 1 as a line: unit vector, and its moment about the platform's origin
         divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
@@ -494,7 +494,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 1: its joint on the base bends beyond its cone
         if not (cos_base_lean_1 >= least_cos_base):
             return (None,)
-        # leg 2: its direction, and the moment of that about the platform's origin
+        # leg 2 as a line: unit vector, and its moment about the platform's origin
         divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
@@ -503,7 +503,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 2: its joint on the base bends beyond its cone
         if not (cos_base_lean_2 >= least_cos_base):
             return (None,)
-        # leg 3: its direction, and the moment of that about the platform's origin
+        # leg 3 as a line: unit vector, and its moment about the platform's origin
         divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
@@ -512,7 +512,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 3: its joint on the base bends beyond its cone
         if not (cos_base_lean_3 >= least_cos_base):
             return (None,)
-        # leg 4: its direction, and the moment of that about the platform's origin
+        # leg 4 as a line: unit vector, and its moment about the platform's origin
         divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
@@ -521,7 +521,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 4: its joint on the base bends beyond its cone
         if not (cos_base_lean_4 >= least_cos_base):
             return (None,)
-        # leg 5: its direction, and the moment of that about the platform's origin
+        # leg 5 as a line: unit vector, and its moment about the platform's origin
         divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
@@ -530,7 +530,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 5: its joint on the base bends beyond its cone
         if not (cos_base_lean_5 >= least_cos_base):
             return (None,)
-        # leg 6: its direction, and the moment of that about the platform's origin
+        # leg 6 as a line: unit vector, and its moment about the platform's origin
         divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
@@ -599,7 +599,7 @@ def unrolled(k: Constants) -> Unrolled:
         arm_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23
         arm_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33
         arm_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13
-        # margin of the platform
+        # determinant of the legs as lines: zero in a type 2 singularity
         (determinant,) = solve(
             (
                 (
@@ -645,61 +645,61 @@ def unrolled(k: Constants) -> Unrolled:
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
-        span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x  # rod 1
-        span_1_y = y + platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23 - base_1_y  # rod 1
-        span_1_z = z + platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33 - base_1_z  # rod 1
-        # l1: quadratic in the rod 1 equation
-        root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
-        l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
+        # rod 1: known part of its vector
+        span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x
+        span_1_y = y + platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23 - base_1_y
+        span_1_z = z + platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33 - base_1_z
+        radicand_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z  # quadratic equation for l1: rod 1
+        l1 = (sqrt(radicand_l1) if radicand_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link_2):
             return None
-        span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x  # rod 2
-        span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y  # rod 2
-        span_2_z = z + platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33 - base_2_z  # rod 2
-        # l2: quadratic in the rod 2 equation
-        root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
-        l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
+        # rod 2: known part of its vector
+        span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x
+        span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y
+        span_2_z = z + platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33 - base_2_z
+        radicand_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z  # quadratic equation for l2: rod 2
+        l2 = (sqrt(radicand_l2) if radicand_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link_2):
             return None
-        span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x  # rod 3
-        span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y  # rod 3
-        span_3_z = z + platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33 - base_3_z  # rod 3
-        # l3: quadratic in the rod 3 equation
-        root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
-        l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
+        # rod 3: known part of its vector
+        span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x
+        span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y
+        span_3_z = z + platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33 - base_3_z
+        radicand_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z  # quadratic equation for l3: rod 3
+        l3 = (sqrt(radicand_l3) if radicand_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link_2):
             return None
-        span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x  # rod 4
-        span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y  # rod 4
-        span_4_z = z + platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33 - base_4_z  # rod 4
-        # l4: quadratic in the rod 4 equation
-        root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
-        l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
+        # rod 4: known part of its vector
+        span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x
+        span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y
+        span_4_z = z + platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33 - base_4_z
+        radicand_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z  # quadratic equation for l4: rod 4
+        l4 = (sqrt(radicand_l4) if radicand_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link_2):
             return None
-        span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x  # rod 5
-        span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y  # rod 5
-        span_5_z = z + platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33 - base_5_z  # rod 5
-        # l5: quadratic in the rod 5 equation
-        root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
-        l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
+        # rod 5: known part of its vector
+        span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x
+        span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y
+        span_5_z = z + platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33 - base_5_z
+        radicand_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z  # quadratic equation for l5: rod 5
+        l5 = (sqrt(radicand_l5) if radicand_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link_2):
             return None
-        span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x  # rod 6
-        span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y  # rod 6
-        span_6_z = z + platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33 - base_6_z  # rod 6
-        # l6: quadratic in the rod 6 equation
-        root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
-        l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
+        # rod 6: known part of its vector
+        span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x
+        span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y
+        span_6_z = z + platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33 - base_6_z
+        radicand_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z  # quadratic equation for l6: rod 6
+        l6 = (sqrt(radicand_l6) if radicand_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link_2):
             return None
-        # leg 1: its direction, and the moment of that about the platform's origin
+        # leg 1 as a line: unit vector, and its moment about the platform's origin
         divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
@@ -708,7 +708,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 1: its joint on the base bends beyond its cone
         if not (cos_base_lean_1 >= least_cos_base):
             return None
-        # leg 2: its direction, and the moment of that about the platform's origin
+        # leg 2 as a line: unit vector, and its moment about the platform's origin
         divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
@@ -717,7 +717,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 2: its joint on the base bends beyond its cone
         if not (cos_base_lean_2 >= least_cos_base):
             return None
-        # leg 3: its direction, and the moment of that about the platform's origin
+        # leg 3 as a line: unit vector, and its moment about the platform's origin
         divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
@@ -726,7 +726,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 3: its joint on the base bends beyond its cone
         if not (cos_base_lean_3 >= least_cos_base):
             return None
-        # leg 4: its direction, and the moment of that about the platform's origin
+        # leg 4 as a line: unit vector, and its moment about the platform's origin
         divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
@@ -735,7 +735,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 4: its joint on the base bends beyond its cone
         if not (cos_base_lean_4 >= least_cos_base):
             return None
-        # leg 5: its direction, and the moment of that about the platform's origin
+        # leg 5 as a line: unit vector, and its moment about the platform's origin
         divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
@@ -744,7 +744,7 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 5: its joint on the base bends beyond its cone
         if not (cos_base_lean_5 >= least_cos_base):
             return None
-        # leg 6: its direction, and the moment of that about the platform's origin
+        # leg 6 as a line: unit vector, and its moment about the platform's origin
         divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
@@ -813,7 +813,7 @@ def unrolled(k: Constants) -> Unrolled:
         arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
         arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
         arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
-        # margin of the platform
+        # determinant of the legs as lines: zero in a type 2 singularity
         (determinant,) = solve(
             (
                 (

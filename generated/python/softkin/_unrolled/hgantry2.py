@@ -31,13 +31,13 @@ def unrolled(k: Constants) -> Unrolled:
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return (2,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return (3,)
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         axis_a = a + offset_a
         # limits of A
         if not (axis_a >= lowest_a and axis_a <= highest_a):
@@ -66,7 +66,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return (None,)
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         return (
             (a + offset_a, offset_b - (x + y)),
         )
@@ -77,7 +77,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         if no_offsets:
             return (a, -(x + y))
         return (a + offset_a, offset_b - (x + y))

@@ -32,10 +32,10 @@ def unrolled(k: Constants) -> Unrolled:
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return (2,)
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         axis_a = a + offset_a
         # limits of A
         if not (axis_a >= lowest_a and axis_a <= highest_a):
@@ -65,7 +65,7 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         return (
             (a + offset_a, offset_b - (x + y), offset_z + z),
         )
@@ -73,7 +73,7 @@ def unrolled(k: Constants) -> Unrolled:
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         if no_offsets:
             return (a, -(x + y), z)
         return (a + offset_a, offset_b - (x + y), offset_z + z)

@@ -39,36 +39,36 @@ def unrolled(k: Constants) -> Unrolled:
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return 4*(2,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(3,)
-        span_1_y = y - rail_y_1  # rod 1
-        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        span_1_y = y - rail_y_1
+        radicand_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_1_squared_times_rounding_2):
+        if not (radicand_a1 >= -arm_length_1_squared_times_rounding_2):
             return 4*(3,)
-        span_2_y = y - rail_y_2  # rod 2
-        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        span_2_y = y - rail_y_2
+        radicand_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_2_squared_times_rounding_2):
+        if not (radicand_a2 >= -arm_length_2_squared_times_rounding_2):
             return 4*(3,)
-        span_2_x = tcp_offset_2 + x  # rod 2
-        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
+        a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         rod_2_x_times_span_1_y_right = (x - pivot_2_x)*span_1_y
-        span_1_x = x - tcp_offset_1  # rod 1
-        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
+        a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
         axis_a2_right = a2 + offset_a2
         axis_a1_left = a1 + offset_a1
-        a2 = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        a2 = span_2_x - (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         rod_2_x_times_span_1_y_left = (x - pivot_2_x)*span_1_y
         axis_a2_left = a2 + offset_a2
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1:
-            pivot_1_x = a1 + tcp_offset_1  # rod 1
+            pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
             rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
@@ -89,10 +89,10 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_left_right_2 = 3
             refusal_left_left_2 = 3
-        a1 = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        a1 = span_1_x + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
         axis_a1_right = a1 + offset_a1
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
-            pivot_1_x = a1 + tcp_offset_1  # rod 1
+            pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
             rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
@@ -126,23 +126,23 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(None,)
-        span_1_y = y - rail_y_1  # rod 1
-        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        span_1_y = y - rail_y_1
+        radicand_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_1_squared_times_rounding_2):
+        if not (radicand_a1 >= -arm_length_1_squared_times_rounding_2):
             return 4*(None,)
-        span_2_y = y - rail_y_2  # rod 2
-        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        span_2_y = y - rail_y_2
+        radicand_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_2_squared_times_rounding_2):
+        if not (radicand_a2 >= -arm_length_2_squared_times_rounding_2):
             return 4*(None,)
-        span_2_x = tcp_offset_2 + x  # rod 2
-        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
+        a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         rod_2_x_times_span_1_y_right = (x - pivot_2_x)*span_1_y
-        span_1_x = x - tcp_offset_1  # rod 1
-        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x = a1 + tcp_offset_1  # rod 1
+        span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
+        a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
+        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
         rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
         type2_arms_aligned = (
             assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
@@ -151,8 +151,8 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_left_right = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_left = a1 + offset_a1
         axis_a2_right = a2 + offset_a2
-        a2 = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        a2 = span_2_x - (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         rod_2_x_times_span_1_y_left = (x - pivot_2_x)*span_1_y
         type2_arms_aligned = (
             assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
@@ -160,8 +160,8 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_left = a2 + offset_a2
-        a1 = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x = a1 + tcp_offset_1  # rod 1
+        a1 = span_1_x + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
+        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
         rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
         type2_arms_aligned = (
             assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
@@ -188,22 +188,22 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
-        span_1_y = y - rail_y_1  # rod 1
-        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        span_1_y = y - rail_y_1
+        radicand_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_1_squared_times_rounding_2):
+        if not (radicand_a1 >= -arm_length_1_squared_times_rounding_2):
             return None
-        span_2_y = y - rail_y_2  # rod 2
-        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        span_2_y = y - rail_y_2
+        radicand_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_2_squared_times_rounding_2):
+        if not (radicand_a2 >= -arm_length_2_squared_times_rounding_2):
             return None
-        span_1_x = x - tcp_offset_1  # rod 1
-        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
-        pivot_1_x = a1 + tcp_offset_1  # rod 1
-        span_2_x = tcp_offset_2 + x  # rod 2
-        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
+        a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1
+        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
+        span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
+        a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         type2_arms_aligned = (
             ((x - pivot_1_x)*(y - rail_y_2) - (x - pivot_2_x)*(y - rail_y_1))
             *assembly_sign_by_arm_length_1_by_arm_length_2

@@ -34,22 +34,22 @@ def unrolled(k: Constants) -> Unrolled:
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return (2,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return (3,)
-        root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
+        radicand_a2 = -(y - arm_length)*(arm_length + y)  # quadratic equation for a2: rod 1 (through x)
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -share_of_arm_length_squared):
+        if not (radicand_a2 >= -share_of_arm_length_squared):
             return (3,)
         type2_flat = assembly_sign_by_arm_length_2*y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
             return (3,)
-        a2 = span_1_x + x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        a1 = 2.0*x - a2  # a1: affine in the x equation
+        a2 = span_1_x + x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        a1 = 2.0*x - a2  # a1 from the x equation, which is linear in it
         axis_a1 = a1 + offset_a1
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
@@ -68,16 +68,16 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return (None,)
-        root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
+        radicand_a2 = -(y - arm_length)*(arm_length + y)  # quadratic equation for a2: rod 1 (through x)
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -share_of_arm_length_squared):
+        if not (radicand_a2 >= -share_of_arm_length_squared):
             return (None,)
         type2_flat = assembly_sign_by_arm_length_2*y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
             return (None,)
-        a2 = span_1_x + x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        a1 = 2.0*x - a2  # a1: affine in the x equation
+        a2 = span_1_x + x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        a1 = 2.0*x - a2  # a1 from the x equation, which is linear in it
         return (
             (a1 + offset_a1, a2 + offset_a2),
         )
@@ -88,16 +88,16 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
-        root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
+        radicand_a2 = -(y - arm_length)*(arm_length + y)  # quadratic equation for a2: rod 1 (through x)
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -share_of_arm_length_squared):
+        if not (radicand_a2 >= -share_of_arm_length_squared):
             return None
         type2_flat = assembly_sign_by_arm_length_2*y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
             return None
-        a2 = span_1_x + x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        a1 = 2.0*x - a2  # a1: affine in the x equation
+        a2 = span_1_x + x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        a1 = 2.0*x - a2  # a1 from the x equation, which is linear in it
         if no_offsets:
             return (a1, a2)
         return (a1 + offset_a1, a2 + offset_a2)

@@ -31,13 +31,13 @@ def unrolled(k: Constants) -> Unrolled:
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return (2,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return (3,)
-        a1 = x + y  # a1, a2: affine in the x and y equations
+        a1 = x + y  # a1 and a2 from the x and y equations, linear in both
         axis_a1 = a1 + offset_a1
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
@@ -66,7 +66,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return (None,)
-        a1 = x + y  # a1, a2: affine in the x and y equations
+        a1 = x + y  # a1 and a2 from the x and y equations, linear in both
         return (
             (a1 + offset_a1, offset_a2 + (y - x)),
         )
@@ -77,7 +77,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
-        a1 = x + y  # a1, a2: affine in the x and y equations
+        a1 = x + y  # a1 and a2 from the x and y equations, linear in both
         if no_offsets:
             return (a1, y - x)
         return (a1 + offset_a1, offset_a2 + (y - x))

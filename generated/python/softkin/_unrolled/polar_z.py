@@ -34,11 +34,11 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_c, _, _ = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
             return (2,)
-        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        # its reference where it is free
+        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
+        # in the singularity: the angle of the reference
         if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
@@ -46,8 +46,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        open_c = mid_c if single_c else ref_c  # C: where its turn is open
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: its turn
+        open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c - open_c < 179.999999999:
             axis_c = nearest_period(axis_c, open_c)
         # limits of C
@@ -69,8 +69,8 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         ref_c, _, _ = 3*(0.0,) if reference is None else reference
-        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        # its reference where it is free
+        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
+        # in the singularity: the angle of the reference
         if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y
@@ -86,8 +86,8 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         ref_c, _, _ = 3*(0.0,) if reference is None else reference
-        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        # its reference where it is free
+        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
+        # in the singularity: the angle of the reference
         if radius_c > machine_scale_times_free_angle_2:
             direction_x_c = x
             direction_y_c = y

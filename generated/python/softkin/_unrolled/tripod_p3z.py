@@ -54,40 +54,37 @@ def unrolled(k: Constants) -> Unrolled:
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return 8*(2,)
-        span_1_x = constant_part + x  # rod 1
-        span_1_y = constant_part_2 + y  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared_2 - span_1_x*span_1_x - span_1_y*span_1_y
-        if root_square_a1 > 0.0:
-            a1 = z + sqrt(root_square_a1)
+        span_1_x = constant_part + x  # rod 1: known part of its vector
+        span_1_y = constant_part_2 + y
+        radicand_a1 = arm_length_squared_2 - span_1_x*span_1_x - span_1_y*span_1_y  # quadratic equation for a1: rod 1
+        if radicand_a1 > 0.0:
+            a1 = z + sqrt(radicand_a1)
         else:
             # rod 1 cannot reach
-            if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
                 return 8*(3,)
             a1 = z
-        span_2_x = constant_part_3 + x  # rod 2
-        span_2_y = constant_part_4 + y  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared_2 - span_2_x*span_2_x - span_2_y*span_2_y
-        if root_square_a2 > 0.0:
-            a2 = z + sqrt(root_square_a2)
+        span_2_x = constant_part_3 + x  # rod 2: known part of its vector
+        span_2_y = constant_part_4 + y
+        radicand_a2 = arm_length_squared_2 - span_2_x*span_2_x - span_2_y*span_2_y  # quadratic equation for a2: rod 2
+        if radicand_a2 > 0.0:
+            a2 = z + sqrt(radicand_a2)
         else:
             # rod 2 cannot reach
-            if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
                 return 8*(3,)
             a2 = z
-        span_3_x = constant_part_5 + x  # rod 3
-        span_3_y = constant_part_6 + y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared_2 - span_3_x*span_3_x - span_3_y*span_3_y
-        if root_square_a3 > 0.0:
-            a3 = z + sqrt(root_square_a3)
+        span_3_x = constant_part_5 + x  # rod 3: known part of its vector
+        span_3_y = constant_part_6 + y
+        radicand_a3 = arm_length_squared_2 - span_3_x*span_3_x - span_3_y*span_3_y  # quadratic equation for a3: rod 3
+        if radicand_a3 > 0.0:
+            a3 = z + sqrt(radicand_a3)
         else:
             # rod 3 cannot reach
-            if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
                 return 8*(3,)
             a3 = z
         rod_3_x = x - pivot_3_x
@@ -103,11 +100,11 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3_above = a3 + offset_a3
         axis_a2_above = a2 + offset_a2
         axis_a1_above = a1 + offset_a1
-        a3 = z - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
+        a3 = z - (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)
         rod_3_z = z - a3
         part_of_type2_rods_coplanar_above_below_above = rod_1_x*rod_2_y*rod_3_z - rod_1_y*rod_2_x*rod_3_z
         axis_a3_below = a3 + offset_a3
-        a2 = z - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        a2 = z - (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
         rod_2_z = z - a2
         part_of_type2_rods_coplanar_above_below_above_below_above_below_2 = (
             rod_1_x*rod_2_z*rod_3_y - rod_1_y*rod_2_z*rod_3_x
@@ -180,7 +177,7 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_above_above_below_2 = 3
             refusal_above_below_above_2 = 3
             refusal_above_below_below_2 = 3
-        a1 = z - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        a1 = z - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
         axis_a1_below = a1 + offset_a1
         if axis_a1_below >= lowest_a1 and axis_a1_below <= highest_a1:
             rod_1_z = z - a1
@@ -301,37 +298,34 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = constant_part + x  # rod 1
-        span_1_y = constant_part_2 + y  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared_2 - span_1_x*span_1_x - span_1_y*span_1_y
-        if root_square_a1 > 0.0:
-            a1 = z + sqrt(root_square_a1)
+        span_1_x = constant_part + x  # rod 1: known part of its vector
+        span_1_y = constant_part_2 + y
+        radicand_a1 = arm_length_squared_2 - span_1_x*span_1_x - span_1_y*span_1_y  # quadratic equation for a1: rod 1
+        if radicand_a1 > 0.0:
+            a1 = z + sqrt(radicand_a1)
         else:
             # rod 1 cannot reach
-            if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
                 return 8*(None,)
             a1 = z
-        span_2_x = constant_part_3 + x  # rod 2
-        span_2_y = constant_part_4 + y  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared_2 - span_2_x*span_2_x - span_2_y*span_2_y
-        if root_square_a2 > 0.0:
-            a2 = z + sqrt(root_square_a2)
+        span_2_x = constant_part_3 + x  # rod 2: known part of its vector
+        span_2_y = constant_part_4 + y
+        radicand_a2 = arm_length_squared_2 - span_2_x*span_2_x - span_2_y*span_2_y  # quadratic equation for a2: rod 2
+        if radicand_a2 > 0.0:
+            a2 = z + sqrt(radicand_a2)
         else:
             # rod 2 cannot reach
-            if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
                 return 8*(None,)
             a2 = z
-        span_3_x = constant_part_5 + x  # rod 3
-        span_3_y = constant_part_6 + y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared_2 - span_3_x*span_3_x - span_3_y*span_3_y
-        if root_square_a3 > 0.0:
-            a3 = z + sqrt(root_square_a3)
+        span_3_x = constant_part_5 + x  # rod 3: known part of its vector
+        span_3_y = constant_part_6 + y
+        radicand_a3 = arm_length_squared_2 - span_3_x*span_3_x - span_3_y*span_3_y  # quadratic equation for a3: rod 3
+        if radicand_a3 > 0.0:
+            a3 = z + sqrt(radicand_a3)
         else:
             # rod 3 cannot reach
-            if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
                 return 8*(None,)
             a3 = z
         rod_3_x = x - pivot_3_x
@@ -358,7 +352,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_above = a1 + offset_a1
         axis_a2_above = a2 + offset_a2
         axis_a3_above = a3 + offset_a3
-        a3 = z - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
+        a3 = z - (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)
         rod_3_z = z - a3
         part_of_type2_rods_coplanar_above_below_above = rod_1_x*rod_2_y*rod_3_z - rod_1_y*rod_2_x*rod_3_z
         part_of_type2_rods_coplanar_above_below_above_below_above_below_4 = (
@@ -374,7 +368,7 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_below = a3 + offset_a3
-        a2 = z - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        a2 = z - (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
         rod_2_z = z - a2
         part_of_type2_rods_coplanar_above_below_above_below_above_below_2 = (
             rod_1_x*rod_2_z*rod_3_y - rod_1_y*rod_2_z*rod_3_x
@@ -398,7 +392,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        a1 = z - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        a1 = z - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
         rod_1_z = z - a1
         part_of_type2_rods_coplanar_above_below_above_below_above_below_3 = (
             rod_1_z*rod_2_x*rod_3_y - rod_1_z*rod_2_y*rod_3_x
@@ -462,37 +456,34 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
-        span_1_x = constant_part + x  # rod 1
-        span_1_y = constant_part_2 + y  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared_2 - span_1_x*span_1_x - span_1_y*span_1_y
-        if root_square_a1 > 0.0:
-            a1 = z + sqrt(root_square_a1)*sigma_carriage_1
+        span_1_x = constant_part + x  # rod 1: known part of its vector
+        span_1_y = constant_part_2 + y
+        radicand_a1 = arm_length_squared_2 - span_1_x*span_1_x - span_1_y*span_1_y  # quadratic equation for a1: rod 1
+        if radicand_a1 > 0.0:
+            a1 = z + sqrt(radicand_a1)*sigma_carriage_1
         else:
             # rod 1 cannot reach
-            if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
                 return None
             a1 = z
-        span_2_x = constant_part_3 + x  # rod 2
-        span_2_y = constant_part_4 + y  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared_2 - span_2_x*span_2_x - span_2_y*span_2_y
-        if root_square_a2 > 0.0:
-            a2 = z + sqrt(root_square_a2)*sigma_carriage_2
+        span_2_x = constant_part_3 + x  # rod 2: known part of its vector
+        span_2_y = constant_part_4 + y
+        radicand_a2 = arm_length_squared_2 - span_2_x*span_2_x - span_2_y*span_2_y  # quadratic equation for a2: rod 2
+        if radicand_a2 > 0.0:
+            a2 = z + sqrt(radicand_a2)*sigma_carriage_2
         else:
             # rod 2 cannot reach
-            if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
                 return None
             a2 = z
-        span_3_x = constant_part_5 + x  # rod 3
-        span_3_y = constant_part_6 + y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared_2 - span_3_x*span_3_x - span_3_y*span_3_y
-        if root_square_a3 > 0.0:
-            a3 = z + sqrt(root_square_a3)*sigma_carriage_3
+        span_3_x = constant_part_5 + x  # rod 3: known part of its vector
+        span_3_y = constant_part_6 + y
+        radicand_a3 = arm_length_squared_2 - span_3_x*span_3_x - span_3_y*span_3_y  # quadratic equation for a3: rod 3
+        if radicand_a3 > 0.0:
+            a3 = z + sqrt(radicand_a3)*sigma_carriage_3
         else:
             # rod 3 cannot reach
-            if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
+            if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
                 return None
             a3 = z
         rod_1_x = x - pivot_1_x

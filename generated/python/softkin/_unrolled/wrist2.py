@@ -33,13 +33,13 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         ref_a, ref_b = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9):
             return 2*(2,)
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
+        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_a > 1e-11:
             direction_x_a_positive = r13_of_a
             direction_y_a_positive = r23_of_a
@@ -51,13 +51,13 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a_positive = sin(free_a)
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
-        open_a = mid_a if single_a else ref_a  # A: where its turn is open
-        # A: its turn
+        open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
+        # A: whole turns added
         axis_a_positive = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive + 0.0)/DEGREE
         if not -180.000000001 <= axis_a_positive - open_a < 179.999999999:
             axis_a_positive = nearest_period(axis_a_positive, open_a)
-        open_b = mid_b if single_b else ref_b  # B: where its turn is open
-        axis_b_positive = offset_b + arctan2(radius_a, r33 + 0.0)/DEGREE  # B: its turn
+        open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
+        axis_b_positive = offset_b + arctan2(radius_a, r33 + 0.0)/DEGREE  # B: whole turns added
         if not -180.000000001 <= axis_b_positive - open_b < 179.999999999:
             axis_b_positive = nearest_period(axis_b_positive, open_b)
         # limits of A, limits of B
@@ -73,10 +73,10 @@ def unrolled(k: Constants) -> Unrolled:
             if radius_a > 1e-11
             else offset_a + arctan2(direction_y_a_negative + 0.0, direction_x_a_negative + 0.0)/DEGREE
         )
-        axis_a_negative = direction_of_axis_a  # A: its turn
+        axis_a_negative = direction_of_axis_a  # A: whole turns added
         if not -180.000000001 <= axis_a_negative - open_a < 179.999999999:
             axis_a_negative = nearest_period(axis_a_negative, open_a)
-        axis_b_negative = offset_b_times_2 - axis_b_positive  # B: its turn
+        axis_b_negative = offset_b_times_2 - axis_b_positive  # B: whole turns added
         if not -180.000000001 <= axis_b_negative - open_b < 179.999999999:
             axis_b_negative = nearest_period(axis_b_negative, open_b)
         # limits of A, limits of B
@@ -98,8 +98,8 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a, _ = 2*(0.0,) if reference is None else reference
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
+        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_a > 1e-11:
             direction_x_a_positive = r13_of_a
             direction_y_a_positive = r23_of_a
@@ -130,8 +130,8 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a, _ = 2*(0.0,) if reference is None else reference
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
+        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_a > 1e-11:
             direction_x_a = sigma_roll*r13_of_a
             direction_y_a = sigma_roll*r23_of_a

@@ -37,11 +37,11 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
         ref_a, ref_b, ref_c = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9 and -1e9 <= ref_c <= 1e9):
             return 2*(2,)
-        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
-        # c: polar angle in the r31 and r32 equations; its reference where it is free
+        radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
+        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
         if radius_c > 1e-11:
             direction_x_c_down = r31
             direction_y_c_down = -r32
@@ -53,16 +53,16 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_c_up = direction_y_c_down
         scaled_r22_before_c = direction_x_c_down*r22 + direction_y_c_down*r21
         direction_y_a = -direction_x_c_down*r12 - direction_y_c_down*r11
-        open_a = mid_a if single_a else ref_a  # A: where its turn is open
-        axis_a_down = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0)/DEGREE  # A: its turn
+        open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
+        axis_a_down = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0)/DEGREE  # A: whole turns added
         if not -180.000000001 <= axis_a_down - open_a < 179.999999999:
             axis_a_down = nearest_period(axis_a_down, open_a)
-        open_b = mid_b if single_b else ref_b  # B: where its turn is open
-        axis_b_down = offset_b + arctan2(radius_c, r33 + 0.0)/DEGREE  # B: its turn
+        open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
+        axis_b_down = offset_b + arctan2(radius_c, r33 + 0.0)/DEGREE  # B: whole turns added
         if not -180.000000001 <= axis_b_down - open_b < 179.999999999:
             axis_b_down = nearest_period(axis_b_down, open_b)
-        open_c = mid_c if single_c else ref_c  # C: where its turn is open
-        axis_c_down = offset_c + arctan2(direction_y_c_down, direction_x_c_down + 0.0)/DEGREE  # C: its turn
+        open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
+        axis_c_down = offset_c + arctan2(direction_y_c_down, direction_x_c_down + 0.0)/DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c_down - open_c < 179.999999999:
             axis_c_down = nearest_period(axis_c_down, open_c)
         # limits of A, limits of B, limits of C
@@ -84,13 +84,13 @@ def unrolled(k: Constants) -> Unrolled:
                 )/DEGREE
             )
             direction_of_axis_c = offset_c + arctan2(direction_y_c_up + 0.0, direction_x_c_up + 0.0)/DEGREE
-        axis_a_up = direction_of_axis_a  # A: its turn
+        axis_a_up = direction_of_axis_a  # A: whole turns added
         if not -180.000000001 <= axis_a_up - open_a < 179.999999999:
             axis_a_up = nearest_period(axis_a_up, open_a)
-        axis_b_up = offset_b_times_2 - axis_b_down  # B: its turn
+        axis_b_up = offset_b_times_2 - axis_b_down  # B: whole turns added
         if not -180.000000001 <= axis_b_up - open_b < 179.999999999:
             axis_b_up = nearest_period(axis_b_up, open_b)
-        axis_c_up = direction_of_axis_c  # C: its turn
+        axis_c_up = direction_of_axis_c  # C: whole turns added
         if not -180.000000001 <= axis_c_up - open_c < 179.999999999:
             axis_c_up = nearest_period(axis_c_up, open_c)
         # limits of A, limits of B, limits of C
@@ -110,8 +110,8 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), (r31, r32, r33)) = frame
         _, _, ref_c = 3*(0.0,) if reference is None else reference
-        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
-        # c: polar angle in the r31 and r32 equations; its reference where it is free
+        radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
+        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
         if radius_c > 1e-11:
             direction_x_c_down = r31
             direction_y_c_down = -r32
@@ -150,8 +150,8 @@ def unrolled(k: Constants) -> Unrolled:
         _, ((r11, r12, _), (r21, r22, _), (r31, r32, r33)) = frame
         (sigma_hand,) = signs
         _, _, ref_c = 3*(0.0,) if reference is None else reference
-        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
-        # c: polar angle in the r31 and r32 equations; its reference where it is free
+        radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
+        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
         if radius_c > 1e-11:
             direction_x_c = sigma_hand*r31
             direction_y_c = -sigma_hand*r32
