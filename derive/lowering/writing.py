@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from derive.ir.graph import PRODUCT, SUM, Node, Value, is_whole, reached
+from derive.ir.graph import ODD, PRODUCT, SUM, Node, Value, is_whole, reached
 from derive.ir.names import Names
 from derive.ir.passes import with_inputs
 from derive.ir.primitives import Select
@@ -217,6 +217,9 @@ class _Writer:
         return node.head is SUM and node not in self._texts
 
     def _better_sign(self, node: Node) -> int:
+        if node.head in ODD:
+            named = self.names.get(node.parts[0].node)
+            return 1 if named is None else named.sign
         surplus = _surplus(node) if self._is_open(node) else 1
         return -1 if surplus < 0 or (surplus == 0 and node.parts[0].sign < 0) else 1
 

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 
 WIDTH = 110
 _INDENT = "  "
+INSIDE = len(_INDENT)
+"""By how much a line inside a choice is shorter."""
 _CALL = re.compile(r"\w+\([^()]*\)")
 _PLAIN_WORD = re.compile(r"[a-z]+\b")
 """A word that may begin a sentence with a capital: no name."""
@@ -19,12 +21,12 @@ def indented(lines: Sequence[str]) -> list[str]:
     return [_INDENT + line if line else line for line in lines]
 
 
-def wrapped(statement: str) -> list[str]:
+def wrapped(statement: str, width: int = WIDTH) -> list[str]:
     """The lines of a statement: broken before an operator or behind a comma, outermost parentheses first."""
     lines: list[str] = []
     margin = ""
-    while len(margin) + len(statement) > WIDTH:
-        place = _place(statement, WIDTH - len(margin))
+    while len(margin) + len(statement) > width:
+        place = _place(statement, width - len(margin))
         if place is None:
             break
         lines.append(margin + statement[:place].rstrip())
@@ -61,11 +63,11 @@ def conjunction(head: str, parts: Sequence[str], tail: str) -> list[str]:
     return [*lines[:-1], lines[-1] + tail]
 
 
-def commented(lines: Sequence[str], comment: str) -> list[str]:
+def commented(lines: Sequence[str], comment: str, width: int = WIDTH) -> list[str]:
     """The lines with a comment beside the last one, or above where there is no room."""
     if not comment:
         return list(lines)
-    if len(lines) == 1 and len(f"{lines[0]}  // {comment}") <= WIDTH:
+    if len(lines) == 1 and len(f"{lines[0]}  // {comment}") <= width:
         return [f"{lines[0]}  // {comment}"]
     sentence = comment[0].upper() + comment[1:] if _PLAIN_WORD.match(comment) else comment
     return [f"// {sentence}", *lines]

@@ -28,9 +28,11 @@ Singularities:
     determinant: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 149 additions, 189 multiplications, 22 divisions, 0 square roots, 14 sines
-    inverse: 76241 additions, 122051 multiplications, 8205 divisions, 3143 square roots, 5316 sines
-    inverse, all 16 branches open: 1219361 additions, 1952141 multiplications, 131145 divisions, 50258 square roots, 85056 sines
+    forward: 148 additions, 186 multiplications, 22 divisions, 0 square roots, 14 sines
+    inverse: 76179 additions, 121956 multiplications, 8184 divisions, 3138 square roots, 5304 sines
+    inverse, all 16 branches open: 1218849 additions, 1951296 multiplications, 130944 divisions, 50208 square roots, 84864 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 30 additions, 49 multiplications, 12 divisions, 3 square roots, 12 sines
     the search along A6: at most 760 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and

@@ -430,22 +430,17 @@ class KinType12XY(OffsetKinematics):
         centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
-            return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
+        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        one_by_normal_square = 1.0/normal_divisor
         # the square of the height over the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
             *one_by_normal_square
         )
-        # the rods do not meet
-        if not (height_square >= -link_length_2_squared_times_rounding):
-            return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
+        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
         rise = root(height_square*one_by_normal_square)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
@@ -458,6 +453,9 @@ class KinType12XY(OffsetKinematics):
         else:
             span_upper_x = x
             span_upper_y = y
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+            return Status.IMPOSSIBLE
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
@@ -577,37 +575,48 @@ class KinType12XY(OffsetKinematics):
             span_upper_y = y
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
-        # a1: its effective length is too short
-        if not (effective_a1 > link_length_1_times_shortest_link):
-            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
         # 1 - cosine, times the scale
         one_less_cos_a1 = (
-            (effective_a1 + link_length_1_minus_link_length_2)*(effective_a1 + link_length_1_plus_link_length_2)
+            (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (
-            (link_length_1_plus_link_length_2 - effective_a1)*(effective_a1 - link_length_1_minus_link_length_2)
+            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
         )
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            missing = (
-                0.5*abs(effective_a1 - link_length_1_minus_link_length_2)
-                + 0.5*abs(effective_a1 + link_length_1_minus_link_length_2)
-                + 0.5*abs(effective_a1 - link_length_1_plus_link_length_2)
-                + 0.5*abs(effective_a1 + link_length_1_plus_link_length_2) - effective_a1
-                - link_length_1_plus_link_length_2
-            )
-            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
-        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
+        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
+        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper
+        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
+        # a1: its effective length is too short
+        if not (effective_a1 > link_length_1_times_shortest_link):
+            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
+        swing_scale_a1 = divisor_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
+        # a1: out of reach
+        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+            missing = (
+                0.5*(
+                    abs(divisor_a1 - link_length_1_minus_link_length_2)
+                    + abs(divisor_a1 + link_length_1_minus_link_length_2)
+                    + abs(divisor_a1 - link_length_1_plus_link_length_2)
+                    + abs(divisor_a1 + link_length_1_plus_link_length_2)
+                )
+                - divisor_a1 - link_length_1_plus_link_length_2
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
         along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
-        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
         across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
@@ -634,14 +643,6 @@ class KinType12XY(OffsetKinematics):
                 - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        if swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_1_y = pivot_upper_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_1_y = pivot_upper_y
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
@@ -753,22 +754,17 @@ class KinType12XY(OffsetKinematics):
         centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
-            return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
+        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        one_by_normal_square = 1.0/normal_divisor
         # the square of the height over the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
             *one_by_normal_square
         )
-        # the rods do not meet
-        if not (height_square >= -link_length_2_squared_times_rounding):
-            return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
+        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
         rise = root(height_square*one_by_normal_square)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
@@ -781,6 +777,9 @@ class KinType12XY(OffsetKinematics):
         else:
             span_upper_x = x
             span_upper_y = y
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+            return Status.IMPOSSIBLE
         margin_stretched_1 = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
@@ -848,24 +847,19 @@ class KinType12XY(OffsetKinematics):
         centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
-            return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
+        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        one_by_normal_square = 1.0/normal_divisor
         # the square of the height over the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
             *one_by_normal_square
         )
-        # the rods do not meet
-        if not (height_square >= -link_length_2_squared_times_rounding):
-            return Status.IMPOSSIBLE
         twice_link_length_1_times_sin_a1 = twice_link_length_1*sin_a1
         twice_link_length_1_times_cos_a1 = twice_link_length_1*cos_a1
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
+        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
         rise = root(height_square*one_by_normal_square)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
@@ -873,23 +867,32 @@ class KinType12XY(OffsetKinematics):
         foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
         twice_y = -2.0*y
-        if swap_xy:
-            slope_1_by_x = twice_link_length_1_times_cos_a1 - twice_x
-            slope_1_by_y = twice_link_length_1_times_sin_a1 - twice_y
-        else:
-            slope_1_by_x = twice_link_length_1_times_sin_a1 - twice_x
-            slope_1_by_y = twice_link_length_1_times_cos_a1 - twice_y
         link_length_3_by_link_length_2_times_x = -link_length_3_by_link_length_2*x
         part_of_slope_2_by_y = cos_a2_times_link_length_5 - part_of_slope_2_by_x*sin_a1
         part_of_slope_2_by_x_2 = link_length_3_by_link_length_2_times_x + part_of_slope_2_by_y
         part_of_slope_2_by_y_2 = link_length_5_times_sin_a2 + part_of_slope_2_by_x*cos_a1
         part_of_slope_2_by_x_3 = part_of_slope_2_by_y_2 - link_length_3_by_link_length_2_times_x
-        slope_2_by_x = (
-            -(-part_of_slope_2_by_x_3 if swap_xy else part_of_slope_2_by_x_2)*link_length_3_times_2_by_link_length_2
-        )
         link_length_3_by_link_length_2_times_y = -link_length_3_by_link_length_2*y
         part_of_slope_2_by_y_3 = part_of_slope_2_by_y_2 - link_length_3_by_link_length_2_times_y
         part_of_slope_2_by_y_4 = link_length_3_by_link_length_2_times_y + part_of_slope_2_by_y
+        if swap_xy:
+            slope_1_by_x = twice_link_length_1_times_cos_a1 - twice_x
+            slope_1_by_y = twice_link_length_1_times_sin_a1 - twice_y
+            slope_1_by_a1 = twice_link_length_1*((y - pivot_upper_x)*cos_a1 + (pivot_upper_y - x)*sin_a1)
+            slope_2_by_a1 = (-part_of_slope_2_by_y_4*cos_a1 - part_of_slope_2_by_x_3*sin_a1)*part_of_slope_2_by_a1
+            slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_x_3*cos_a2 - part_of_slope_2_by_y_4*sin_a2)
+        else:
+            slope_1_by_x = twice_link_length_1_times_sin_a1 - twice_x
+            slope_1_by_y = twice_link_length_1_times_cos_a1 - twice_y
+            slope_1_by_a1 = twice_link_length_1*((x - pivot_upper_x)*cos_a1 + (pivot_upper_y - y)*sin_a1)
+            slope_2_by_a1 = (-part_of_slope_2_by_x_2*cos_a1 - part_of_slope_2_by_y_3*sin_a1)*part_of_slope_2_by_a1
+            slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_y_3*cos_a2 - part_of_slope_2_by_x_2*sin_a2)
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+            return Status.IMPOSSIBLE
+        slope_2_by_x = (
+            -(-part_of_slope_2_by_x_3 if swap_xy else part_of_slope_2_by_x_2)*link_length_3_times_2_by_link_length_2
+        )
         slope_2_by_y = (
             -(part_of_slope_2_by_y_4 if swap_xy else -part_of_slope_2_by_y_3)*link_length_3_times_2_by_link_length_2
         )
@@ -898,14 +901,6 @@ class KinType12XY(OffsetKinematics):
         # nothing controls the plate
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
-        if swap_xy:
-            slope_1_by_a1 = twice_link_length_1*((y - pivot_upper_x)*cos_a1 + (pivot_upper_y - x)*sin_a1)
-            slope_2_by_a1 = (-part_of_slope_2_by_y_4*cos_a1 - part_of_slope_2_by_x_3*sin_a1)*part_of_slope_2_by_a1
-            slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_x_3*cos_a2 - part_of_slope_2_by_y_4*sin_a2)
-        else:
-            slope_1_by_a1 = twice_link_length_1*((x - pivot_upper_x)*cos_a1 + (pivot_upper_y - y)*sin_a1)
-            slope_2_by_a1 = (-part_of_slope_2_by_x_2*cos_a1 - part_of_slope_2_by_y_3*sin_a1)*part_of_slope_2_by_a1
-            slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_y_3*cos_a2 - part_of_slope_2_by_x_2*sin_a2)
         one_by_determinant = 1.0/determinant
         slope_2_by_a2_times_one_by_determinant = -one_by_determinant*slope_2_by_a2
         return (
@@ -979,37 +974,48 @@ class KinType12XY(OffsetKinematics):
             span_upper_y = flange_y
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
-        # a1: its effective length is too short
-        if not (effective_a1 > link_length_1_times_shortest_link):
-            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        swing_scale_a1 = effective_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
         # 1 - cosine, times the scale
         one_less_cos_a1 = (
-            (effective_a1 + link_length_1_minus_link_length_2)*(effective_a1 + link_length_1_plus_link_length_2)
+            (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (
-            (link_length_1_plus_link_length_2 - effective_a1)*(effective_a1 - link_length_1_minus_link_length_2)
+            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
         )
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-            missing = (
-                0.5*abs(effective_a1 - link_length_1_minus_link_length_2)
-                + 0.5*abs(effective_a1 + link_length_1_minus_link_length_2)
-                + 0.5*abs(effective_a1 - link_length_1_plus_link_length_2)
-                + 0.5*abs(effective_a1 + link_length_1_plus_link_length_2) - effective_a1
-                - link_length_1_plus_link_length_2
-            )
-            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
-        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
+        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
+        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper
+        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
+        # a1: its effective length is too short
+        if not (effective_a1 > link_length_1_times_shortest_link):
+            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
+        swing_scale_a1 = divisor_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
+        # a1: out of reach
+        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+            missing = (
+                0.5*(
+                    abs(divisor_a1 - link_length_1_minus_link_length_2)
+                    + abs(divisor_a1 + link_length_1_minus_link_length_2)
+                    + abs(divisor_a1 - link_length_1_plus_link_length_2)
+                    + abs(divisor_a1 + link_length_1_plus_link_length_2)
+                )
+                - divisor_a1 - link_length_1_plus_link_length_2
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
         along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
-        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
         across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
@@ -1036,14 +1042,6 @@ class KinType12XY(OffsetKinematics):
                 - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        if swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_1_y = pivot_upper_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_1_y = pivot_upper_y
         rod_1_x = flange_x - centre_1_x
         rod_1_y = flange_y - centre_1_y
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
@@ -1122,22 +1120,17 @@ class KinType12XY(OffsetKinematics):
         centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
-            return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
+        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        one_by_normal_square = 1.0/normal_divisor
         # the square of the height over the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
             *one_by_normal_square
         )
-        # the rods do not meet
-        if not (height_square >= -link_length_2_squared_times_rounding):
-            return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
+        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_square
         foot_x = along_centres*apart_2_x
         rise = root(height_square*one_by_normal_square)*assembly_sign
         flange_x = centre_1_x + foot_x - apart_2_y*rise
@@ -1150,6 +1143,9 @@ class KinType12XY(OffsetKinematics):
         else:
             span_upper_x = flange_x
             span_upper_y = flange_y
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+            return Status.IMPOSSIBLE
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
         span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
         span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear

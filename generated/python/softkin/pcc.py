@@ -18,8 +18,9 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 13 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 38 additions, 22 multiplications, 9 divisions, 2 square roots, 4 sines
-    inverse, all 2 branches open: 72 additions, 42 multiplications, 17 divisions, 4 square roots, 8 sines
+    inverse: 37 additions, 21 multiplications, 9 divisions, 2 square roots, 2 sines
+    inverse, all 2 branches open: 70 additions, 40 multiplications, 17 divisions, 4 square roots, 4 sines
+    a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 Angles are right-handed about +Z.
 

@@ -21,8 +21,9 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 29 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
-    inverse: 67 additions, 49 multiplications, 15 divisions, 5 square roots, 7 sines
-    inverse, all 4 branches open: 265 additions, 196 multiplications, 60 divisions, 20 square roots, 28 sines
+    inverse: 54 additions, 36 multiplications, 13 divisions, 4 square roots, 3 sines
+    inverse, all 4 branches open: 213 additions, 144 multiplications, 52 divisions, 16 square roots, 12 sines
+    a branch at a singular pose, more: 11 additions, 11 multiplications, 2 divisions, 1 square roots, 4 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -484,26 +485,6 @@ class PosRRR(OffsetKinematics):
         wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
-        wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
-        # a later step needs this of q1: no larger in size than
-        value_q1_for_q3 = (
-            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
-            - a2_squared_plus_effective_q3_2_squared
-        )
-        rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
-        # to the boundary of the later step
-        if abs(rate_q1_for_q3) > size_q1_for_q3_2_times_rounding:
-            excess_q1_for_q3 = (
-                value_q1_for_q3 - size_q1_for_q3_2
-                if value_q1_for_q3 > 0.0
-                else size_q1_for_q3_2 + value_q1_for_q3
-            )
-            turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
-        else:
-            turn_q1_for_q3 = 0.0
-        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-        one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/distance_q1_squared
@@ -512,28 +493,55 @@ class PosRRR(OffsetKinematics):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
-        turned_cos_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
-        )
-        turned_sin_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
-        )
-        # what is left of its own equation
-        turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
         # turned within rounding, where the rest can be reached
-        ahead_q1 = (
-            ahead_q1_before_q1_for_q3
-            if ahead_squared_q1 > machine_scale_squared_times_plane
-            else (
-                ahead_q1_before_q1_for_q3
-                if abs(value_q1_for_q3) <= size_q1_for_q3_2
-                else (
-                    ahead_q1_before_q1_for_q3
-                    if turned_cost_q1_for_q3 > machine_scale_times_rounding
-                    else turned_ahead_q1_for_q3
-                )
+        if ahead_squared_q1 > machine_scale_squared_times_plane:
+            ahead_q1 = ahead_q1_before_q1_for_q3
+            cos_q1 = cos_q1_before_q1_for_q3
+            sin_q1 = sin_q1_before_q1_for_q3
+        else:
+            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
+            # a later step needs this of q1: no larger in size than
+            value_q1_for_q3 = (
+                wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+                - a2_squared_plus_effective_q3_2_squared
             )
-        )
+            # turned within rounding, where the rest can be reached
+            if abs(value_q1_for_q3) <= size_q1_for_q3_2:
+                ahead_q1 = ahead_q1_before_q1_for_q3
+                cos_q1 = cos_q1_before_q1_for_q3
+                sin_q1 = sin_q1_before_q1_for_q3
+            else:
+                rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+                # to the boundary of the later step
+                if abs(rate_q1_for_q3) > size_q1_for_q3_2_times_rounding:
+                    excess_q1_for_q3 = (
+                        value_q1_for_q3 - size_q1_for_q3_2
+                        if value_q1_for_q3 > 0.0
+                        else size_q1_for_q3_2 + value_q1_for_q3
+                    )
+                    turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+                else:
+                    turn_q1_for_q3 = 0.0
+                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
+                turned_cos_q1_for_q3 = (
+                    one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
+                )
+                turned_sin_q1_for_q3 = (
+                    one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
+                )
+                # what is left of its own equation
+                turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
+                # turned within rounding, where the rest can be reached
+                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
+                    ahead_q1 = ahead_q1_before_q1_for_q3
+                    cos_q1 = cos_q1_before_q1_for_q3
+                    sin_q1 = sin_q1_before_q1_for_q3
+                else:
+                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
+                    ahead_q1 = turned_ahead_q1_for_q3
+                    cos_q1 = turned_cos_q1_for_q3
+                    sin_q1 = turned_sin_q1_for_q3
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
         # 1 - cosine, times the scale
@@ -551,23 +559,6 @@ class PosRRR(OffsetKinematics):
                 - a2_plus_effective_q3_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # turned within rounding, where the rest can be reached
-        if ahead_squared_q1 > machine_scale_squared_times_plane:
-            cos_q1 = cos_q1_before_q1_for_q3
-            sin_q1 = sin_q1_before_q1_for_q3
-        else:
-            # turned within rounding, where the rest can be reached
-            if abs(value_q1_for_q3) <= size_q1_for_q3_2:
-                cos_q1 = cos_q1_before_q1_for_q3
-                sin_q1 = sin_q1_before_q1_for_q3
-            else:
-                # turned within rounding, where the rest can be reached
-                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
-                    cos_q1 = cos_q1_before_q1_for_q3
-                    sin_q1 = sin_q1_before_q1_for_q3
-                else:
-                    cos_q1 = turned_cos_q1_for_q3
-                    sin_q1 = turned_sin_q1_for_q3
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
@@ -851,27 +842,6 @@ class PosRRR(OffsetKinematics):
         wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
-        wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
-        # a later step needs this of q1: no larger in size than
-        value_q1_for_q3 = (
-            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 - a2_squared
-            - effective_q3*effective_q3
-        )
-        size_q1_for_q3 = abs(effective_q3)*twice_a2
-        rate_q1_for_q3 = -2.0*tool_z*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
-        # to the boundary of the later step
-        if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
-            excess_q1_for_q3 = (
-                value_q1_for_q3 - size_q1_for_q3
-                if value_q1_for_q3 > 0.0
-                else size_q1_for_q3 + value_q1_for_q3
-            )
-            turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
-        else:
-            turn_q1_for_q3 = 0.0
-        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-        one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - tool_z*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - tool_z*y)/distance_q1_squared
@@ -880,28 +850,56 @@ class PosRRR(OffsetKinematics):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
-        turned_cos_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
-        )
-        turned_sin_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
-        )
-        # what is left of its own equation
-        turned_cost_q1_for_q3 = abs(tool_z + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
         # turned within rounding, where the rest can be reached
-        ahead_q1 = (
-            ahead_q1_before_q1_for_q3
-            if ahead_squared_q1 > machine_scale_squared_times_plane
-            else (
-                ahead_q1_before_q1_for_q3
-                if abs(value_q1_for_q3) <= size_q1_for_q3
-                else (
-                    ahead_q1_before_q1_for_q3
-                    if turned_cost_q1_for_q3 > machine_scale_times_rounding
-                    else turned_ahead_q1_for_q3
-                )
+        if ahead_squared_q1 > machine_scale_squared_times_plane:
+            ahead_q1 = ahead_q1_before_q1_for_q3
+            cos_q1 = cos_q1_before_q1_for_q3
+            sin_q1 = sin_q1_before_q1_for_q3
+        else:
+            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
+            # a later step needs this of q1: no larger in size than
+            value_q1_for_q3 = (
+                wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 - a2_squared
+                - effective_q3*effective_q3
             )
-        )
+            size_q1_for_q3 = abs(effective_q3)*twice_a2
+            # turned within rounding, where the rest can be reached
+            if abs(value_q1_for_q3) <= size_q1_for_q3:
+                ahead_q1 = ahead_q1_before_q1_for_q3
+                cos_q1 = cos_q1_before_q1_for_q3
+                sin_q1 = sin_q1_before_q1_for_q3
+            else:
+                rate_q1_for_q3 = -2.0*tool_z*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+                # to the boundary of the later step
+                if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
+                    excess_q1_for_q3 = (
+                        value_q1_for_q3 - size_q1_for_q3
+                        if value_q1_for_q3 > 0.0
+                        else size_q1_for_q3 + value_q1_for_q3
+                    )
+                    turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+                else:
+                    turn_q1_for_q3 = 0.0
+                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
+                turned_cos_q1_for_q3 = (
+                    one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
+                )
+                turned_sin_q1_for_q3 = (
+                    one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
+                )
+                # what is left of its own equation
+                turned_cost_q1_for_q3 = abs(tool_z + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
+                # turned within rounding, where the rest can be reached
+                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
+                    ahead_q1 = ahead_q1_before_q1_for_q3
+                    cos_q1 = cos_q1_before_q1_for_q3
+                    sin_q1 = sin_q1_before_q1_for_q3
+                else:
+                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - tool_z*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
+                    ahead_q1 = turned_ahead_q1_for_q3
+                    cos_q1 = turned_cos_q1_for_q3
+                    sin_q1 = turned_sin_q1_for_q3
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
         a2_plus_effective_q3 = a2 + effective_q3
@@ -920,23 +918,6 @@ class PosRRR(OffsetKinematics):
                 - a2 - effective_q3 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # turned within rounding, where the rest can be reached
-        if ahead_squared_q1 > machine_scale_squared_times_plane:
-            cos_q1 = cos_q1_before_q1_for_q3
-            sin_q1 = sin_q1_before_q1_for_q3
-        else:
-            # turned within rounding, where the rest can be reached
-            if abs(value_q1_for_q3) <= size_q1_for_q3:
-                cos_q1 = cos_q1_before_q1_for_q3
-                sin_q1 = sin_q1_before_q1_for_q3
-            else:
-                # turned within rounding, where the rest can be reached
-                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
-                    cos_q1 = cos_q1_before_q1_for_q3
-                    sin_q1 = sin_q1_before_q1_for_q3
-                else:
-                    cos_q1 = turned_cos_q1_for_q3
-                    sin_q1 = turned_sin_q1_for_q3
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn

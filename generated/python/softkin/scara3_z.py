@@ -20,8 +20,10 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 22 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 85 additions, 72 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 137 additions, 99 multiplications, 35 divisions, 8 square roots, 10 sines
+    inverse: 52 additions, 26 multiplications, 13 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches open: 103 additions, 52 multiplications, 26 divisions, 6 square roots, 6 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
 

@@ -20,8 +20,10 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 24 additions, 12 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 103 additions, 88 multiplications, 26 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 167 additions, 125 multiplications, 41 divisions, 8 square roots, 10 sines
+    inverse: 62 additions, 37 multiplications, 15 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches open: 117 additions, 68 multiplications, 28 divisions, 6 square roots, 6 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 9 additions, 6 multiplications, 2 divisions, 0 square roots, 2 sines
 
 A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.
 

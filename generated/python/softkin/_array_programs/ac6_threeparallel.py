@@ -14,7 +14,6 @@ from softkin._array import (
     Reals,
     Rotation,
     Signs,
-    Truth,
     Turns,
     Vector,
     Whole,
@@ -242,7 +241,7 @@ class ArrayPrograms(Programs):
         ) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            sin_of_free_a6 = sin(free_a6)
             r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
             r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
             radius_q6_before_q1_for_q3 = sqrt(
@@ -262,7 +261,7 @@ class ArrayPrograms(Programs):
                 sin_of_free_a6: Real,
             ) -> Reals:
                 cos_q6_before_q1_for_q3 = cos_of_free_a6
-                sin_q6_before_q1_for_q3 = -sin_of_free_a6
+                sin_q6_before_q1_for_q3 = sin_of_free_a6
 
                 def elsewhere_radius_q6_rate_q1_for_q3() -> Reals:
                     radius_q6_rate_q1_for_q3 = 0.0
@@ -635,9 +634,9 @@ class ArrayPrograms(Programs):
         def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            sin_of_free_a6 = sin(free_a6)
             cos_q6_before_q6_of_q3 = cos_of_free_a6  # its reference where it is free
-            sin_q6_before_q6_of_q3 = -sin_of_free_a6
+            sin_q6_before_q6_of_q3 = sin_of_free_a6
             return (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3)
 
         along_q6 = -sigma_wrist*r21_from_q1  # q6: polar angle in the r31 and r32 equations
@@ -977,7 +976,7 @@ class ArrayPrograms(Programs):
         ) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            sin_of_free_a6 = sin(free_a6)
             r21_from_q1_before_q1_for_q3_left = r21*cos_q1_before_q1_for_q3_left - r11*sin_q1_before_q1_for_q3_left
             r22_from_q1_before_q1_for_q3_left = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
             radius_q6_before_q1_for_q3_left = sqrt(
@@ -994,7 +993,7 @@ class ArrayPrograms(Programs):
                 radius_q6_before_q1_for_q3_left: Real, sin_of_free_a6: Real,
             ) -> Reals:
                 cos_q6_before_q1_for_q3_left_down = cos_of_free_a6
-                sin_q6_before_q1_for_q3_left_down = -sin_of_free_a6
+                sin_q6_before_q1_for_q3_left_down = sin_of_free_a6
 
                 def elsewhere_radius_q6_rate_q1_for_q3_left() -> Reals:
                     radius_q6_rate_q1_for_q3_left = 0.0
@@ -1016,7 +1015,7 @@ class ArrayPrograms(Programs):
                 cos_q6_rate_q1_for_q3_left_down = 0.0
                 sin_q6_rate_q1_for_q3_left_down = 0.0
                 cos_q6_before_q1_for_q3_left_up = cos_of_free_a6
-                sin_q6_before_q1_for_q3_left_up = sin_q6_before_q1_for_q3_left_down
+                sin_q6_before_q1_for_q3_left_up = sin_of_free_a6
                 cos_q6_rate_q1_for_q3_left_up = 0.0
                 sin_q6_rate_q1_for_q3_left_up = 0.0
                 return (
@@ -1113,68 +1112,6 @@ class ArrayPrograms(Programs):
                 - a2_squared_plus_a3_squared
             )
             r23_from_q1_rate_q1_for_q3_left = -r13*cos_q1_before_q1_for_q3_left - r23*sin_q1_before_q1_for_q3_left
-            r21_from_q1_before_q6_rate_q1_for_q3_left_down = (
-                r31*cos_q6_rate_q1_for_q3_left_down - r32*sin_q6_rate_q1_for_q3_left_down
-            )
-            r21_from_q1_before_q56_rate_q1_for_q3_left_down = (
-                r21_from_q1_before_q6_rate_q1_for_q3_left_down*cos_q5_before_q1_for_q3_left
-                - r21_from_q1_before_q6_before_q1_for_q3_left_down*r23_from_q1_rate_q1_for_q3_left
-                - r33*radius_q6_rate_q1_for_q3_left
-            )
-            wrist_x_from_q1_rate_q1_for_q3_left_down = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3_left_down
-            r22_from_q1_before_q6_rate_q1_for_q3_left_down = (
-                r32*cos_q6_rate_q1_for_q3_left_down + r31*sin_q6_rate_q1_for_q3_left_down
-            )
-            wrist_y_from_q1_rate_q1_for_q3_left_down = d5*r22_from_q1_before_q6_rate_q1_for_q3_left_down
-            # how it changes with q1
-            rate_q1_for_q3_left_down = (
-                2.0*wrist_x_from_q1_before_q1_for_q3_left_down*wrist_x_from_q1_rate_q1_for_q3_left_down
-                + 2.0*wrist_y_from_q1_before_q1_for_q3_left_down*wrist_y_from_q1_rate_q1_for_q3_left_down
-            )
-
-            def elsewhere_turn_q1_for_q3_left_down() -> Reals:
-                turn_q1_for_q3_left_down = 1.0  # to the boundary of the later step
-                return (turn_q1_for_q3_left_down,)
-
-            excess_q1_for_q3_left_down = select(
-                value_q1_for_q3_left_down > 0.0, value_q1_for_q3_left_down - size_q1_for_q3,
-                size_q1_for_q3 + value_q1_for_q3_left_down,
-            )
-            # to the boundary of the later step
-            turn_q1_for_q3_left_down = -excess_q1_for_q3_left_down/rate_q1_for_q3_left_down
-            (turn_q1_for_q3_left_down,) = elsewhere(
-                absolute(rate_q1_for_q3_left_down) > size_q1_for_q3_times_rounding,
-                (turn_q1_for_q3_left_down,),
-                elsewhere_turn_q1_for_q3_left_down,
-                (),
-            )
-            turn_q1_for_q3_squared_left_down = turn_q1_for_q3_left_down*turn_q1_for_q3_left_down
-            turned_length_q1_for_q3_left_down = root(1.0 + turn_q1_for_q3_squared_left_down)
-            one_by_turned_length_q1_for_q3_left_down = 1.0/turned_length_q1_for_q3_left_down
-            turned_cos_q1_for_q3_left_down = (
-                one_by_turned_length_q1_for_q3_left_down
-                *(cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left)
-            )
-            turned_sin_q1_for_q3_left_down = (
-                one_by_turned_length_q1_for_q3_left_down
-                *(sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left)
-            )
-            # what is left of its own equation
-            turned_cost_q1_for_q3_left_down = absolute(
-                d4 + turned_cos_q1_for_q3_left_down*wrist_y - turned_sin_q1_for_q3_left_down*wrist_x
-            )
-            # whether it follows q6
-            follows_q1_for_q3_left_down = (
-                (turn_q1_for_q3_squared_left_down > 1e-12)
-                | (
-                    (
-                        r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
-                        + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
-                    )
-                    *turn_q1_for_q3_squared_left_down > 1e-12*radius_q6_before_q1_for_q3_left
-                    *radius_q6_before_q1_for_q3_left
-                )
-            )
             part_of_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5*wrist_z
             part_of_across_q6_q1_for_q3_2_left = -ahead_q1_before_q1_for_q3_right*twice_d5*cos_q5_before_q1_for_q3_left
             along_q6_q1_for_q3_left = -part_of_across_q6_q1_for_q3*r32 - part_of_across_q6_q1_for_q3_2_left*r31
@@ -1423,7 +1360,7 @@ class ArrayPrograms(Programs):
                 one_by_radius_q6_before_q1_for_q3_right*r22_from_q1_before_q1_for_q3_right
             )
             sin_q6_before_q1_for_q3_right_down = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, part_of_sin_q6_before_q1_for_q3_right_down, sin_of_free_a6,
             )
             r21_from_q1_before_q6_before_q1_for_q3_right_down = (
                 r31*cos_q6_before_q1_for_q3_right_down - r32*sin_q6_before_q1_for_q3_right_down
@@ -1457,7 +1394,7 @@ class ArrayPrograms(Programs):
                 radius_q6_before_q1_for_q3_right > 1e-11, part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6,
             )
             sin_q6_before_q1_for_q3_right_up = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_sin_q6_before_q1_for_q3_right_down, sin_of_free_a6,
             )
             r21_from_q1_before_q6_before_q1_for_q3_right_up = (
                 r31*cos_q6_before_q1_for_q3_right_up - r32*sin_q6_before_q1_for_q3_right_up
@@ -2037,18 +1974,84 @@ class ArrayPrograms(Programs):
 
             def elsewhere_ahead_q1_left_down(
                 ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
-                follows_q1_for_q3_left_down: Truth, one_by_turned_length_q1_for_q3_left_down: Real,
-                sin_q1_before_q1_for_q3_left: Real, swept_cos_q1_for_q3_left_down: Real,
-                swept_cost_q1_for_q3_left_down: Real, swept_sin_q1_for_q3_left_down: Real, turn_q1_for_q3_left_down: Real,
-                turned_cos_q1_for_q3_left_down: Real, turned_cost_q1_for_q3_left_down: Real,
-                turned_sin_q1_for_q3_left_down: Real, wrist_x: Real, wrist_y: Real,
+                cos_q5_before_q1_for_q3_left: Real, cos_q6_rate_q1_for_q3_left_down: Real,
+                r21_from_q1_before_q6_before_q1_for_q3_left_down: Real, r21_from_q1_rate_q1_for_q3_left: Real,
+                r22_from_q1_rate_q1_for_q3_left: Real, r23_from_q1_rate_q1_for_q3_left: Real, r31: Real, r32: Real,
+                r33: Real, radius_q6_before_q1_for_q3_left: Real, radius_q6_rate_q1_for_q3_left: Real,
+                sin_q1_before_q1_for_q3_left: Real, sin_q6_rate_q1_for_q3_left_down: Real,
+                swept_cos_q1_for_q3_left_down: Real, swept_cost_q1_for_q3_left_down: Real,
+                swept_sin_q1_for_q3_left_down: Real, value_q1_for_q3_left_down: Real, wrist_x: Real,
+                wrist_x_from_q1_before_q1_for_q3_left_down: Real, wrist_y: Real,
+                wrist_y_from_q1_before_q1_for_q3_left_down: Real,
             ) -> Reals:
+                r21_from_q1_before_q6_rate_q1_for_q3_left_down = (
+                    r31*cos_q6_rate_q1_for_q3_left_down - r32*sin_q6_rate_q1_for_q3_left_down
+                )
+                r21_from_q1_before_q56_rate_q1_for_q3_left_down = (
+                    r21_from_q1_before_q6_rate_q1_for_q3_left_down*cos_q5_before_q1_for_q3_left
+                    - r21_from_q1_before_q6_before_q1_for_q3_left_down*r23_from_q1_rate_q1_for_q3_left
+                    - r33*radius_q6_rate_q1_for_q3_left
+                )
+                wrist_x_from_q1_rate_q1_for_q3_left_down = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3_left_down
+                r22_from_q1_before_q6_rate_q1_for_q3_left_down = (
+                    r32*cos_q6_rate_q1_for_q3_left_down + r31*sin_q6_rate_q1_for_q3_left_down
+                )
+                wrist_y_from_q1_rate_q1_for_q3_left_down = d5*r22_from_q1_before_q6_rate_q1_for_q3_left_down
+                # how it changes with q1
+                rate_q1_for_q3_left_down = (
+                    2.0*wrist_x_from_q1_before_q1_for_q3_left_down*wrist_x_from_q1_rate_q1_for_q3_left_down
+                    + 2.0*wrist_y_from_q1_before_q1_for_q3_left_down*wrist_y_from_q1_rate_q1_for_q3_left_down
+                )
+
+                def elsewhere_turn_q1_for_q3_left_down() -> Reals:
+                    turn_q1_for_q3_left_down = 1.0  # to the boundary of the later step
+                    return (turn_q1_for_q3_left_down,)
+
+                excess_q1_for_q3_left_down = select(
+                    value_q1_for_q3_left_down > 0.0, value_q1_for_q3_left_down - size_q1_for_q3,
+                    size_q1_for_q3 + value_q1_for_q3_left_down,
+                )
+                # to the boundary of the later step
+                turn_q1_for_q3_left_down = -excess_q1_for_q3_left_down/rate_q1_for_q3_left_down
+                (turn_q1_for_q3_left_down,) = elsewhere(
+                    absolute(rate_q1_for_q3_left_down) > size_q1_for_q3_times_rounding,
+                    (turn_q1_for_q3_left_down,),
+                    elsewhere_turn_q1_for_q3_left_down,
+                    (),
+                )
+                turn_q1_for_q3_squared_left_down = turn_q1_for_q3_left_down*turn_q1_for_q3_left_down
+                # whether it follows q6
+                follows_q1_for_q3_left_down = (
+                    (turn_q1_for_q3_squared_left_down > 1e-12)
+                    | (
+                        (
+                            r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
+                            + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                        )
+                        *turn_q1_for_q3_squared_left_down > 1e-12*radius_q6_before_q1_for_q3_left
+                        *radius_q6_before_q1_for_q3_left
+                    )
+                )
 
                 def elsewhere_best_cost_q1_for_q3_left_down(
-                    ahead_q1_before_q1_for_q3_right: Real, one_by_turned_length_q1_for_q3_left_down: Real,
-                    turn_q1_for_q3_left_down: Real, turned_cos_q1_for_q3_left_down: Real,
-                    turned_cost_q1_for_q3_left_down: Real, turned_sin_q1_for_q3_left_down: Real,
+                    ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
+                    sin_q1_before_q1_for_q3_left: Real, turn_q1_for_q3_left_down: Real,
+                    turn_q1_for_q3_squared_left_down: Real, wrist_x: Real, wrist_y: Real,
                 ) -> Reals:
+                    turned_length_q1_for_q3_left_down = root(1.0 + turn_q1_for_q3_squared_left_down)
+                    one_by_turned_length_q1_for_q3_left_down = 1.0/turned_length_q1_for_q3_left_down
+                    turned_cos_q1_for_q3_left_down = (
+                        one_by_turned_length_q1_for_q3_left_down
+                        *(cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left)
+                    )
+                    turned_sin_q1_for_q3_left_down = (
+                        one_by_turned_length_q1_for_q3_left_down
+                        *(sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left)
+                    )
+                    # what is left of its own equation
+                    turned_cost_q1_for_q3_left_down = absolute(
+                        d4 + turned_cos_q1_for_q3_left_down*wrist_y - turned_sin_q1_for_q3_left_down*wrist_x
+                    )
                     best_cost_q1_for_q3_left_down = turned_cost_q1_for_q3_left_down
                     turned_ahead_q1_for_q3_left_down = (
                         (-ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_left_down)
@@ -2077,8 +2080,8 @@ class ArrayPrograms(Programs):
                     ),
                     elsewhere_best_cost_q1_for_q3_left_down,
                     (
-                        ahead_q1_before_q1_for_q3_right, one_by_turned_length_q1_for_q3_left_down, turn_q1_for_q3_left_down,
-                        turned_cos_q1_for_q3_left_down, turned_cost_q1_for_q3_left_down, turned_sin_q1_for_q3_left_down,
+                        ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left,
+                        turn_q1_for_q3_left_down, turn_q1_for_q3_squared_left_down, wrist_x, wrist_y,
                     ),
                 )
                 (
@@ -2114,11 +2117,13 @@ class ArrayPrograms(Programs):
                 (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down),
                 elsewhere_ahead_q1_left_down,
                 (
-                    ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, follows_q1_for_q3_left_down,
-                    one_by_turned_length_q1_for_q3_left_down, sin_q1_before_q1_for_q3_left, swept_cos_q1_for_q3_left_down,
-                    swept_cost_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down, turn_q1_for_q3_left_down,
-                    turned_cos_q1_for_q3_left_down, turned_cost_q1_for_q3_left_down, turned_sin_q1_for_q3_left_down,
-                    wrist_x, wrist_y,
+                    ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, cos_q5_before_q1_for_q3_left,
+                    cos_q6_rate_q1_for_q3_left_down, r21_from_q1_before_q6_before_q1_for_q3_left_down,
+                    r21_from_q1_rate_q1_for_q3_left, r22_from_q1_rate_q1_for_q3_left, r23_from_q1_rate_q1_for_q3_left,
+                    r31, r32, r33, radius_q6_before_q1_for_q3_left, radius_q6_rate_q1_for_q3_left,
+                    sin_q1_before_q1_for_q3_left, sin_q6_rate_q1_for_q3_left_down, swept_cos_q1_for_q3_left_down,
+                    swept_cost_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down, value_q1_for_q3_left_down, wrist_x,
+                    wrist_x_from_q1_before_q1_for_q3_left_down, wrist_y, wrist_y_from_q1_before_q1_for_q3_left_down,
                 ),
             )
 
@@ -2713,9 +2718,9 @@ class ArrayPrograms(Programs):
         def elsewhere_cos_q6_before_q6_of_q3_left_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            sin_of_free_a6 = sin(free_a6)
             cos_q6_before_q6_of_q3_left_down = cos_of_free_a6  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_down = -sin_of_free_a6
+            sin_q6_before_q6_of_q3_left_down = sin_of_free_a6
             return (cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down)
 
         # its reference where it is free
@@ -2996,9 +3001,9 @@ class ArrayPrograms(Programs):
         def elsewhere_cos_q6_before_q6_of_q3_left_up(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            sin_of_free_a6 = sin(free_a6)
             cos_q6_before_q6_of_q3_left_up = cos_of_free_a6  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = -sin_of_free_a6
+            sin_q6_before_q6_of_q3_left_up = sin_of_free_a6
             return (cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up)
 
         cos_q6_before_q6_of_q3_left_up = r21_from_q1_left_up/radius_q6_left_up  # its reference where it is free
@@ -3276,9 +3281,9 @@ class ArrayPrograms(Programs):
         def elsewhere_cos_q6_before_q6_of_q3_right_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            sin_of_free_a6 = sin(free_a6)
             cos_q6_before_q6_of_q3_right_down = cos_of_free_a6  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = -sin_of_free_a6
+            sin_q6_before_q6_of_q3_right_down = sin_of_free_a6
             return (cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down)
 
         # its reference where it is free
@@ -3557,9 +3562,9 @@ class ArrayPrograms(Programs):
         def elsewhere_cos_q6_before_q6_of_q3_right_up(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            sin_of_free_a6 = sin(free_a6)
             cos_q6_before_q6_of_q3_right_up = cos_of_free_a6  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = -sin_of_free_a6
+            sin_q6_before_q6_of_q3_right_up = sin_of_free_a6
             return (cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up)
 
         cos_q6_before_q6_of_q3_right_up = r21_from_q1_right_up/radius_q6_right_up  # its reference where it is free

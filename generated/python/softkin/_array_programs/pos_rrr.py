@@ -386,29 +386,6 @@ class ArrayPrograms(Programs):
         wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3_front = root(ahead_squared_q1)
-        wrist_x_from_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front - a1
-        # a later step needs this of q1: no larger in size than
-        value_q1_for_q3_front = (
-            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3_front*wrist_x_from_q1_before_q1_for_q3_front
-            - a2_squared_plus_effective_q3_2_squared
-        )
-        rate_q1_for_q3_front = -twice_d3*wrist_x_from_q1_before_q1_for_q3_front  # how it changes with q1
-
-        def elsewhere_turn_q1_for_q3_front() -> Reals:
-            turn_q1_for_q3_front = 0.0  # to the boundary of the later step
-            return (turn_q1_for_q3_front,)
-
-        excess_q1_for_q3_front = select(
-            value_q1_for_q3_front > 0.0, value_q1_for_q3_front - size_q1_for_q3_2,
-            size_q1_for_q3_2 + value_q1_for_q3_front,
-        )
-        turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # to the boundary of the later step
-        (turn_q1_for_q3_front,) = elsewhere(
-            absolute(rate_q1_for_q3_front) > size_q1_for_q3_2_times_rounding,
-            (turn_q1_for_q3_front,),
-            elsewhere_turn_q1_for_q3_front,
-            (),
-        )
 
         def elsewhere_cos_q1_before_q1_for_q3_front(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -444,20 +421,39 @@ class ArrayPrograms(Programs):
         def elsewhere_ahead_q1_front(
             ahead_q1_before_q1_for_q3_front: Real, cos_q1_before_q1_for_q3_back: Real,
             cos_q1_before_q1_for_q3_front: Real, sin_q1_before_q1_for_q3_back: Real,
-            sin_q1_before_q1_for_q3_front: Real, turn_q1_for_q3_front: Real, value_q1_for_q3_front: Real,
-            wrist_y_from_q1_squared: Real, x: Real, y: Real,
+            sin_q1_before_q1_for_q3_front: Real, wrist_y_from_q1_squared: Real, x: Real, y: Real,
         ) -> Reals:
-            turned_length_q1_for_q3_front = root(1.0 + turn_q1_for_q3_front*turn_q1_for_q3_front)
-            one_by_turned_length_q1_for_q3_front = 1.0/turned_length_q1_for_q3_front
-            turned_ahead_q1_for_q3_front = (
-                (ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_front)*one_by_turned_length_q1_for_q3_front
+            wrist_x_from_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front - a1
+            # a later step needs this of q1: no larger in size than
+            value_q1_for_q3_front = (
+                wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3_front*wrist_x_from_q1_before_q1_for_q3_front
+                - a2_squared_plus_effective_q3_2_squared
             )
 
             def elsewhere_ahead_q1_front(
                 ahead_q1_before_q1_for_q3_front: Real, cos_q1_before_q1_for_q3_front: Real,
-                one_by_turned_length_q1_for_q3_front: Real, sin_q1_before_q1_for_q3_front: Real,
-                turn_q1_for_q3_front: Real, turned_ahead_q1_for_q3_front: Real, x: Real, y: Real,
+                sin_q1_before_q1_for_q3_front: Real, value_q1_for_q3_front: Real,
+                wrist_x_from_q1_before_q1_for_q3_front: Real, x: Real, y: Real,
             ) -> Reals:
+                rate_q1_for_q3_front = -twice_d3*wrist_x_from_q1_before_q1_for_q3_front  # how it changes with q1
+
+                def elsewhere_turn_q1_for_q3_front() -> Reals:
+                    turn_q1_for_q3_front = 0.0  # to the boundary of the later step
+                    return (turn_q1_for_q3_front,)
+
+                excess_q1_for_q3_front = select(
+                    value_q1_for_q3_front > 0.0, value_q1_for_q3_front - size_q1_for_q3_2,
+                    size_q1_for_q3_2 + value_q1_for_q3_front,
+                )
+                turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # to the boundary of the later step
+                (turn_q1_for_q3_front,) = elsewhere(
+                    absolute(rate_q1_for_q3_front) > size_q1_for_q3_2_times_rounding,
+                    (turn_q1_for_q3_front,),
+                    elsewhere_turn_q1_for_q3_front,
+                    (),
+                )
+                turned_length_q1_for_q3_front = root(1.0 + turn_q1_for_q3_front*turn_q1_for_q3_front)
+                one_by_turned_length_q1_for_q3_front = 1.0/turned_length_q1_for_q3_front
                 turned_cos_q1_for_q3_front = (
                     one_by_turned_length_q1_for_q3_front
                     *(cos_q1_before_q1_for_q3_front - turn_q1_for_q3_front*sin_q1_before_q1_for_q3_front)
@@ -470,8 +466,12 @@ class ArrayPrograms(Programs):
                 turned_cost_q1_for_q3_front = absolute(d3 + turned_cos_q1_for_q3_front*y - turned_sin_q1_for_q3_front*x)
 
                 def elsewhere_ahead_q1_front(
-                    turned_ahead_q1_for_q3_front: Real, turned_cos_q1_for_q3_front: Real, turned_sin_q1_for_q3_front: Real,
+                    ahead_q1_before_q1_for_q3_front: Real, one_by_turned_length_q1_for_q3_front: Real,
+                    turn_q1_for_q3_front: Real, turned_cos_q1_for_q3_front: Real, turned_sin_q1_for_q3_front: Real,
                 ) -> Reals:
+                    turned_ahead_q1_for_q3_front = (
+                        (ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_front)*one_by_turned_length_q1_for_q3_front
+                    )
                     ahead_q1_front = turned_ahead_q1_for_q3_front  # turned within rounding, where the rest can be reached
                     cos_q1_front = turned_cos_q1_for_q3_front  # turned within rounding, where the rest can be reached
                     sin_q1_front = turned_sin_q1_for_q3_front  # turned within rounding, where the rest can be reached
@@ -484,7 +484,10 @@ class ArrayPrograms(Programs):
                     turned_cost_q1_for_q3_front > machine_scale_times_rounding,
                     (ahead_q1_front, cos_q1_front, sin_q1_front),
                     elsewhere_ahead_q1_front,
-                    (turned_ahead_q1_for_q3_front, turned_cos_q1_for_q3_front, turned_sin_q1_for_q3_front),
+                    (
+                        ahead_q1_before_q1_for_q3_front, one_by_turned_length_q1_for_q3_front, turn_q1_for_q3_front,
+                        turned_cos_q1_for_q3_front, turned_sin_q1_for_q3_front,
+                    ),
                 )
                 return (ahead_q1_front, cos_q1_front, sin_q1_front)
 
@@ -496,8 +499,8 @@ class ArrayPrograms(Programs):
                 (ahead_q1_front, cos_q1_front, sin_q1_front),
                 elsewhere_ahead_q1_front,
                 (
-                    ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front, one_by_turned_length_q1_for_q3_front,
-                    sin_q1_before_q1_for_q3_front, turn_q1_for_q3_front, turned_ahead_q1_for_q3_front, x, y,
+                    ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front,
+                    value_q1_for_q3_front, wrist_x_from_q1_before_q1_for_q3_front, x, y,
                 ),
             )
             wrist_x_from_q1_before_q1_for_q3_back = -a1 - ahead_q1_before_q1_for_q3_front
@@ -595,8 +598,7 @@ class ArrayPrograms(Programs):
             elsewhere_ahead_q1_front,
             (
                 ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_front,
-                sin_q1_before_q1_for_q3_back, sin_q1_before_q1_for_q3_front, turn_q1_for_q3_front,
-                value_q1_for_q3_front, wrist_y_from_q1_squared, x, y,
+                sin_q1_before_q1_for_q3_back, sin_q1_before_q1_for_q3_front, wrist_y_from_q1_squared, x, y,
             ),
         )
         wrist_x_from_q1_front = ahead_q1_front - a1  # what the unknown links must span
