@@ -26,7 +26,8 @@ SUM, PRODUCT = sp.Add, sp.Mul
 Head = Any
 """A name or a positive number; or what is done with the parts: `SUM`, `PRODUCT`, a primitive, a comparison, AND, OR."""
 _EVEN = (sp.cos, sp.Abs)
-_ODD = (sp.sin, ToReal)
+ODD = (sp.sin, ToReal)
+"""What changes its sign with its argument."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -118,8 +119,8 @@ class Graph:
         parts = tuple(arguments)
         if head is Select:
             return self._choice(*parts)
-        if head in _EVEN or head in _ODD:
-            sign = parts[0].sign if head in _ODD else 1
+        if head in _EVEN or head in ODD:
+            sign = parts[0].sign if head in ODD else 1
             return Value(self._called(head, (Value(parts[0].node, 1),)).node, sign)
         return self._called(head, parts)
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from derive.ir.graph import PRODUCT, SUM, Node, Value, is_whole, reached
+from derive.ir.graph import ODD, PRODUCT, SUM, Node, Value, is_whole, reached
 from derive.ir.names import Names
 from derive.ir.passes import with_inputs
 from derive.ir.primitives import Select
@@ -218,6 +218,9 @@ class _Writer:
         return node.head is SUM and node not in self.names and node not in self.constants
 
     def _better_sign(self, node: Node) -> int:
+        if node.head in ODD:
+            named = self.names.get(node.parts[0].node)
+            return 1 if named is None else named.sign
         if not self._is_open(node):
             return self._shown_sign(Value(node, 1))
         surplus = self._surplus(node)

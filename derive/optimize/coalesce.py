@@ -25,7 +25,7 @@ from derive.ir.symbols import (
     called,
     symbols_of,
 )
-from derive.optimize.control_flow import Arms, Item
+from derive.ir.tree import If, Item
 from derive.optimize.unroll import Sign, without_words
 
 
@@ -75,7 +75,7 @@ def _with_last_words(name: sp.Symbol, signs: Sequence[Sign], kept: int) -> sp.Sy
 
 def _bound(item: Item) -> Iterator[sp.Symbol]:
     """The names that a statement binds, wherever in it."""
-    if isinstance(item, Arms):
+    if isinstance(item, If):
         for inner in (*item.holds, *item.fails):
             yield from _bound(inner)
     else:
@@ -83,13 +83,13 @@ def _bound(item: Item) -> Iterator[sp.Symbol]:
 
 
 def _read(item: Item) -> set[sp.Symbol]:
-    if isinstance(item, Arms):
+    if isinstance(item, If):
         return symbols_of(item.condition).union(*map(_read, (*item.holds, *item.fails)))
     return {s for e in expressions(item) for s in symbols_of(e)} | reads(item)
 
 
 def _renamed(item: Item, names: Mapping[sp.Symbol, sp.Symbol]) -> Item:
-    if isinstance(item, Arms):
+    if isinstance(item, If):
         sides = {side: tuple(_renamed(i, names) for i in getattr(item, side)) for side in ("holds", "fails")}
         called = tuple(names.get(n, n) for n in item.names)
         return replace(item, condition=item.condition.xreplace(dict(names)), names=called, **sides)

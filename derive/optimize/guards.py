@@ -27,7 +27,7 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     symbols_of,
 )
-from derive.optimize.control_flow import Arms, Item
+from derive.ir.tree import If, Item
 
 
 class PositiveRoot(sp.Function):
@@ -70,10 +70,10 @@ def _root_of(require: Require, later: Sequence[Statement], known: Mapping[sp.Bas
     return None if vanished.has(sp.zoo, sp.nan) else takers[0]
 
 
-def _choice(require: Require, root: Let) -> Arms:
+def _choice(require: Require, root: Let) -> If:
     square = require.condition.args[0]
     positive, zero = (root.value.xreplace({Root(square): there}) for there in (PositiveRoot(square), sp.Integer(0)))
-    return Arms(sp.Gt(square, 0), (replace(root, value=positive),), (require, replace(root, value=zero)), (root.name,))
+    return If(sp.Gt(square, 0), (replace(root, value=positive),), (require, replace(root, value=zero)), (root.name,))
 
 
 def _is_never_positive(value: sp.Expr) -> bool:

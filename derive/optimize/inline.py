@@ -29,7 +29,7 @@ from derive.ir.program import (
     expressions,
     rewritten,
 )
-from derive.optimize.control_flow import Arms, Item
+from derive.ir.tree import If, Item
 
 LONGEST = 5
 """A value that reads more names than this keeps its own."""
@@ -59,7 +59,7 @@ def written_where_read(
 def _shortened(items: Sequence[Item], once: set[sp.Symbol], values: dict[sp.Basic, sp.Basic]) -> tuple[Item, ...]:
     kept: list[Item] = []
     for item in items:
-        if isinstance(item, Arms):
+        if isinstance(item, If):
             condition = item.condition.xreplace(values)
             holds, fails = (_shortened(side, once - set(item.names), values) for side in (item.holds, item.fails))
             kept.append(replace(item, condition=condition, holds=holds, fails=fails))
@@ -80,7 +80,7 @@ def _read(items: Sequence[Item]) -> Counter[sp.Basic]:
     """How often names are written on the way through a program on which they are most."""
     found = Counter[sp.Basic]()
     for item in items:
-        if isinstance(item, Arms):
+        if isinstance(item, If):
             found += _written(item.condition) + _written(item.condition) + (_read(item.holds) | _read(item.fails))
         else:
             for value in expressions(item):
@@ -91,7 +91,7 @@ def _read(items: Sequence[Item]) -> Counter[sp.Basic]:
 def _values(items: Sequence[Item]) -> Iterator[sp.Basic]:
     """All expressions."""
     for item in items:
-        if isinstance(item, Arms):
+        if isinstance(item, If):
             yield item.condition
             yield from _values((*item.holds, *item.fails))
         else:
@@ -101,7 +101,7 @@ def _values(items: Sequence[Item]) -> Iterator[sp.Basic]:
 def _bound(items: Sequence[Item]) -> Iterator[sp.Symbol]:
     """The names that are bound, as often as they are."""
     for item in items:
-        if isinstance(item, Arms):
+        if isinstance(item, If):
             yield from _bound((*item.holds, *item.fails))
         elif isinstance(item, Let):
             yield item.name

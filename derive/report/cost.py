@@ -1,13 +1,14 @@
 """What a program costs: the arithmetic of one call at worst, counted in the statements that every language prints.
 
-A subtraction is an addition, a change of sign and a comparison are free, a power is so many multiplications. Both values of
-a choice count, all passes of an iteration, and what `Initialize` computed once counts nothing.
+A subtraction is an addition, a change of sign and a comparison are free, a power is so many multiplications. Of a choice
+between statements the side counts that takes more, of one between values both, of an iteration all passes; what `Initialize`
+computed once counts nothing.
 """
 
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import sympy as sp
@@ -33,7 +34,9 @@ from derive.ir.program import (
     Solve,
     Statement,
 )
+from derive.ir.tree import If, Item
 from derive.kinematics.kinematics import Kinematics
+from derive.lowering.scheduling import structured
 
 _BINARY_FRACTIONS = (2, 4, 8, 16)
 """The denominators that are written as a decimal factor."""
@@ -62,6 +65,18 @@ class Cost:
         return self.additions, self.multiplications, self.divisions, self.roots, self.trigonometric
 
 
+_OfSides = Callable[[Cost, Cost], Cost]
+
+
+def _most(*costs: Cost) -> Cost:
+    return Cost(*map(max, zip(*(cost.counts for cost in costs), strict=True)))
+
+
+def _regular(holds: Cost, _: Cost) -> Cost:
+    """Rules put first what holds away from singular poses."""
+    return holds
+
+
 @dataclass(frozen=True)
 class Bound:
     """An iteration: the program it is in, what it does, and how many passes it has at most."""
@@ -77,9 +92,13 @@ class Costs:
 
     forward: Cost
     inverse: Cost
-    """With a configuration that names every branch."""
+    """With a configuration that names every branch, away from singular poses."""
     automatic: Cost
     """With a configuration that leaves every branch open: the same where there is none."""
+    repair: Cost
+    """Of the commanded rotation, once a call more: nothing where it is not read."""
+    corners: Cost
+    """What a branch takes more at a singular pose: on the second sides of choices."""
     bounds: tuple[Bound, ...]
 
 
@@ -99,25 +118,26 @@ _PERIOD_BYTE = Cost(additions=3, divisions=1)
 def costs_of(kinematics: Kinematics) -> Costs:
     """What forward and inverse kinematics of a mechanism cost at worst."""
     periods, axes = len(kinematics.period_joints), len(kinematics.distance_joints)
-    branch, limits = (_with_refusals(p) for p in (kinematics.branch, kinematics.limits))
+    limits, branch = _with_refusals(kinematics.limits), _with_refusals(kinematics.branch, _regular)
     # The distance of a solution from the reference, a sum of squares, and its comparison with the least so far
     tried = branch + Cost(additions=3 * axes, multiplications=axes) if kinematics.branches else branch
-    once = _with_refusals(rotation_program()) + limits if kinematics.reads_rotation else limits
     return Costs(
         forward=cost_of(kinematics.forward) + _PERIOD_BYTE * periods,
-        inverse=tried + once,
-        automatic=tried * 2 ** len(kinematics.branches) + once,
+        inverse=tried + limits,
+        automatic=tried * 2 ** len(kinematics.branches) + limits,
+        repair=_with_refusals(rotation_program()) if kinematics.reads_rotation else Cost(),
+        corners=_with_refusals(kinematics.branch) + branch * -1,
         bounds=tuple(dict.fromkeys(b for p in (kinematics.forward, kinematics.branch) for b in _bounds(p))),
     )
 
 
-def _with_refusals(program: Program) -> Cost:
+def _with_refusals(program: Program, of_sides: _OfSides = _most) -> Cost:
     """The same where a refusal also computes how much is missing: nothing that follows is then computed."""
-    worst, before = cost_of(program), Cost()
-    for statement in program.body:
-        before += _statement(statement)
-        if isinstance(statement, Require):
-            worst = _most(worst, *(before + expression_cost(e) for e in _amounts(statement)))
+    worst, before = cost_of(program, of_sides), Cost()
+    for item in structured(program):
+        before += _item(item, of_sides)
+        if isinstance(item, Require):
+            worst = _most(worst, *(before + expression_cost(e) for e in _amounts(item)))
     return worst
 
 
@@ -126,13 +146,10 @@ def _amounts(require: Require) -> tuple[sp.Expr, ...]:
     return () if reason is None or reason.amount is None else (reason.amount,)
 
 
-def _most(*costs: Cost) -> Cost:
-    return Cost(*map(max, zip(*(cost.counts for cost in costs), strict=True)))
-
-
-def cost_of(program: Program) -> Cost:
-    """What one run of a program costs at worst."""
-    return _total(map(_statement, program.body)) + _total(map(expression_cost, (o.value for o in program.outputs)))
+def cost_of(program: Program, of_sides: _OfSides = _most) -> Cost:
+    """What one run of a program costs at worst. of_sides: of the two sides of a choice, the cost that counts."""
+    items = (_item(item, of_sides) for item in structured(program))
+    return _total(items) + _total(map(expression_cost, (o.value for o in program.outputs)))
 
 
 def expression_cost(node: sp.Basic) -> Cost:
@@ -154,6 +171,13 @@ def solve_cost(size: int, columns: int) -> Cost:
         multiplications=eliminated + back + 2 * size,
         divisions=size * (size - 1) // 2 + size * columns,
     )
+
+
+def _item(item: Item, of_sides: _OfSides) -> Cost:
+    if isinstance(item, If):
+        sides = (_total(_item(inner, of_sides) for inner in side) for side in (item.holds, item.fails))
+        return expression_cost(item.condition) + of_sides(*sides)
+    return _statement(item)
 
 
 def _statement(statement: Statement) -> Cost:

@@ -33,7 +33,8 @@ from derive.ir.program import (
     Statement,
     reads,
 )
-from derive.optimize.control_flow import Arms, Item, in_arms
+from derive.ir.tree import If, Item
+from derive.lowering.scheduling import scheduled
 
 
 def array_body(method: Method) -> list[str]:
@@ -55,12 +56,12 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
     alike = fixed(program.body, {s for statement in program.body for s in reads(statement) if s.name in constants})
 
     def bound(item: Item) -> list[str]:
-        if isinstance(item, Arms):
+        if isinstance(item, If):
             return array_arm_lines(item, alike, bound, printer)
         assert isinstance(item, Let | Solve)
         return binding_lines(item, turns if isinstance(item, Let) and isinstance(item.value, NearestPeriod) else printer)
 
-    for item, same in grouped(in_arms(_refused_late(program.body), [o.value for o in program.outputs])):
+    for item, same in grouped(scheduled(_refused_late(program.body), [o.value for o in program.outputs])):
         if isinstance(item, Iterate):
             lines += [*array_head(item, printer), *step_lines(item, printer), *array_end(item, printer)]
         elif isinstance(item, Call):

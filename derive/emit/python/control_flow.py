@@ -39,11 +39,11 @@ from derive.ir.symbols import (
     is_count,
     symbols_of,
 )
-from derive.optimize.control_flow import Arms, Item
+from derive.ir.tree import If, Item
 
 
 def array_arm_lines(
-    arms: Arms, constants: Collection[sp.Symbol], lines: Callable[[Item], list[str]], printer: ScalarPrinter
+    arms: If, constants: Collection[sp.Symbol], lines: Callable[[Item], list[str]], printer: ScalarPrinter
 ) -> list[str]:
     """The choice. constants: what is the same in all rows, so that a choice that only they decide is made once."""
     condition, results = printer.print(arms.condition), [spelled(name.name) for name in arms.names]
@@ -99,7 +99,7 @@ def _read_anywhere(items: Sequence[Item]) -> set[sp.Symbol]:
     """What statements read, whoever binds it."""
     found = set[sp.Symbol]()
     for item in items:
-        if isinstance(item, Arms):
+        if isinstance(item, If):
             found |= symbols_of(item.condition) | _read_anywhere(item.holds) | _read_anywhere(item.fails)
         else:
             found |= reads(item)
@@ -140,9 +140,9 @@ def _read(items: Sequence[Item]) -> set[sp.Symbol]:
     """What statements read that they do not bind."""
     found, bound = set[sp.Symbol](), set[sp.Symbol]()
     for item in items:
-        read = symbols_of(item.condition) | _read(item.holds) | _read(item.fails) if isinstance(item, Arms) else reads(item)
+        read = symbols_of(item.condition) | _read(item.holds) | _read(item.fails) if isinstance(item, If) else reads(item)
         found |= read - bound
-        bound |= set(item.names if isinstance(item, Arms) else binds(item))
+        bound |= set(item.names if isinstance(item, If) else binds(item))
     return found
 
 

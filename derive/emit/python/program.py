@@ -41,9 +41,9 @@ from derive.ir.symbols import (
     PLACE,
     symbols_of,
 )
+from derive.ir.tree import If, Item
 from derive.ir.verify import verify
-from derive.lowering.decided import decided
-from derive.optimize.control_flow import Arms, Item, in_arms, spared, told_on_sides
+from derive.lowering.scheduling import structured
 
 Shape = str | tuple["Shape", ...]
 """Names, nested as the tuples of the method's arguments and results are."""
@@ -98,9 +98,7 @@ def scalar_body(method: Method, refusals: Refusals = PLAIN) -> list[str]:
 
 def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """The statements of a program on plain numbers."""
-    program = decided(without_conversions(program))
-    wanted = [o.value for o in program.outputs]
-    return item_lines(told_on_sides(spared(in_arms(program.body, wanted), wanted), program), refusals, printer)
+    return item_lines(structured(without_conversions(program)), refusals, printer)
 
 
 def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:
@@ -127,7 +125,7 @@ def _refusing(requires: Sequence[Require], refusals: Refusals) -> list[str]:
 
 def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """A binding, or a choice between two sides that bind the same or refuse."""
-    if isinstance(item, Arms):
+    if isinstance(item, If):
         notes = dict.fromkeys(i.comment for i in item.holds if isinstance(i, Let) and i.name in item.names and i.comment)
         head = [*(f"# {note}" for note in notes), *fold(f"if {conjunction([item.condition])}:")]
         sides = [[_unnoted(i, item.names) for i in side] for side in (item.holds, item.fails)]

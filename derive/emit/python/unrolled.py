@@ -30,12 +30,13 @@ from derive.ir.symbols import (
     count,
     symbols_of,
 )
+from derive.ir.tree import Item
 from derive.kinematics.kinematics import Kinematics
+from derive.lowering.scheduling import scheduled, spared
 from derive.optimize.angle_addition import angles_first
 from derive.optimize.coalesce import reused_names
 from derive.optimize.common_parts import common_parts
 from derive.optimize.constant_parts import constant_parts
-from derive.optimize.control_flow import Item, in_arms, spared
 from derive.optimize.guards import guarded
 from derive.optimize.inline import written_where_read
 from derive.optimize.known_projection import aimed
@@ -214,7 +215,7 @@ class _Written:
         """known: what the constants are that it reads."""
         method = replace(method, program=without_conversions(method.program))
         wanted = [o.value for o in method.program.outputs]
-        items = spared(in_arms(guarded(method.program.body, known), wanted), wanted)
+        items = spared(scheduled(guarded(method.program.body, known), wanted), wanted)
         items, values = written_where_read(items, wanted)
         return cls(method, items, {o.name: o.value.xreplace(dict(values)) for o in method.program.outputs})
 

@@ -168,6 +168,8 @@ def _costs(costs: Costs, block: Block) -> Iterator[str]:
     if block.branches:
         rows[1:] = [("CartesianToAxes, one branch", costs.inverse)]
         rows.append((f"CartesianToAxes, all {block.slots} branches open", costs.automatic))
+    more = (("Repair of a frame, more", costs.repair), ("A branch at a singular pose, more", costs.corners))
+    rows += [(what, cost) for what, cost in more if any(cost.counts)]
     yield from _table(_COST_HEAD, map(_cost_row, rows))
     if costs.bounds:
         yield ""

@@ -49,6 +49,15 @@ def is_larger(expression: sp.Basic) -> bool:
     return isinstance(expression, Select) and expression.args[0] == sp.Gt(*expression.args[1:])
 
 
+def limits_of(expression: sp.Basic) -> tuple[sp.Expr, sp.Expr, sp.Expr] | None:
+    """The lower limit, the value and the upper limit of a choice that keeps a value inside limits."""
+    if not (isinstance(expression, Select) and isinstance(expression.args[2], Select)):
+        return None
+    (above, high, _), (below, low, value) = expression.args, expression.args[2].args
+    is_limited = above == sp.Gt(value, high) and below == sp.Lt(value, low)
+    return (low, value, high) if is_limited and low.is_number and high.is_number else None
+
+
 class StructuredText(ExpressionPrinter):
     """Spell an expression, given the spelling of every name in it."""
 
@@ -61,6 +70,8 @@ class StructuredText(ExpressionPrinter):
             return f"Softkin_IsNumber({self.print(expression.lhs.args[0])})"
         if is_larger(expression):
             return f"MAX({self.print(expression.args[2])}, {self.print(expression.args[1])})"
+        if (limits := limits_of(expression)) is not None:
+            return f"LIMIT({', '.join(map(self.print, limits))})"
         return super().print(expression)
 
     def name(self, symbol: sp.Symbol) -> str:

@@ -8,8 +8,8 @@ from textwrap import wrap
 
 WIDTH = 110
 _INDENT = "  "
-_MOST = WIDTH - 3 * len(_INDENT)
-"""How long a line of a statement is at most, before it is indented by the conditions under which it stands."""
+INSIDE = len(_INDENT)
+"""By how much a line inside a choice is shorter."""
 _CALL = re.compile(r"\w+\([^()]*\)")
 _PLAIN_WORD = re.compile(r"[a-z]+\b")
 """A word that may begin a sentence with a capital: no name."""
@@ -22,12 +22,12 @@ def indented(lines: Sequence[str]) -> list[str]:
     return [_INDENT + line if line else line for line in lines]
 
 
-def wrapped(statement: str) -> list[str]:
+def wrapped(statement: str, width: int = WIDTH - INSIDE) -> list[str]:
     """The lines of a statement: broken before an operator or behind a comma, outermost parentheses first."""
     lines: list[str] = []
     margin = ""
-    while len(margin) + len(statement) > _MOST:
-        place = _place(statement, _MOST - len(margin))
+    while len(margin) + len(statement) > width:
+        place = _place(statement, width - len(margin))
         if place is None:
             break
         lines.append(margin + statement[:place].rstrip())
@@ -58,20 +58,20 @@ def conjunction(head: str, parts: Sequence[str], tail: str) -> list[str]:
         return wrapped(f"{head}{parts[0]}{tail}")
     bracketed = [part if _CALL.fullmatch(part) else f"({part})" for part in parts]
     whole = f"{head}{' AND '.join(bracketed)}{tail}"
-    if len(whole) <= _MOST or max(map(len, bracketed)) <= _LONG_CONDITION:
+    if len(whole) <= WIDTH - INSIDE or max(map(len, bracketed)) <= _LONG_CONDITION:
         return wrapped(whole)
     lines = [head + bracketed[0], *(f"{2 * _INDENT}AND {part}" for part in bracketed[1:])]
     return [*lines[:-1], lines[-1] + tail]
 
 
-def commented(lines: Sequence[str], comment: str) -> list[str]:
+def commented(lines: Sequence[str], comment: str, width: int = WIDTH - INSIDE) -> list[str]:
     """The lines with a comment beside the last one, or above where there is no room."""
     if not comment:
         return list(lines)
-    if len(lines) == 1 and len(f"{lines[0]}  // {comment}") <= _MOST:
+    if len(lines) == 1 and len(f"{lines[0]}  // {comment}") <= width:
         return [f"{lines[0]}  // {comment}"]
     sentence = comment[0].upper() + comment[1:] if _PLAIN_WORD.match(comment) else comment
-    return [*wrap(sentence, _MOST, initial_indent="// ", subsequent_indent="// "), *lines]
+    return [*wrap(sentence, width, initial_indent="// ", subsequent_indent="// "), *lines]
 
 
 def _place(text: str, width: int) -> int | None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 import sympy as sp
 
-from derive.emit.st.expression import StructuredText, is_size_test
-from derive.emit.st.layout import commented, indented, wrapped
+from derive.emit.st.expression import StructuredText, is_size_test, limits_of
+from derive.emit.st.layout import INSIDE, WIDTH, commented, indented, wrapped
 from derive.emit.st.loops import LOCALS, declarations, kept, loop_lines, solve_lines
 from derive.emit.st.names import respelled, spellings, type_name
 from derive.emit.st.refusal import Refusal
@@ -18,6 +18,7 @@ from derive.ir.constants import (
     DEGREE,
 )
 from derive.ir.primitives import (
+    Root,
     Select,
 )
 from derive.ir.program import (
@@ -28,11 +29,12 @@ from derive.ir.program import (
     Program,
     Require,
     Solve,
-    Statement,
     Status,
 )
+from derive.ir.tree import If, Item, bound_in
 from derive.ir.types import type_of
 from derive.lowering.decided import decided
+from derive.lowering.scheduling import structured
 
 _SHORT = 72
 """A selection that fits in this many columns stays on one line."""
@@ -59,16 +61,16 @@ def printed(
     `given` spells what it reads, `stored` those of its bindings that are instance variables; the others are
     temporaries, and have none of the names in `taken`.
     """
-    program = decided(program)
+    items = structured(program)
     stored = {**stored, **kept(program.body)}
-    own = {name.name: name for name in program.bound() if name.name not in stored}
+    own = {name.name: name for name in bound_in(items) if name.name not in stored}
     temporaries = spellings(own, (*taken, *LOCALS, OUTCOME))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
     return Printed(
         variables=tuple((temporaries[name], type_name(type_of(symbol))) for name, symbol in own.items()),
         declarations=(*declarations(program.body), *_outcome(program, refusal)),
-        body="\n".join(_body(program.body, printer, refusal)),
-        outputs={o.name: printer.print(o.value) for o in program.outputs},
+        body="\n".join(_body(items, printer, refusal)),
+        outputs={o.name: printer.print(o.value) for o in decided(program).outputs},
     )
 
 
@@ -77,10 +79,13 @@ def _outcome(program: Program, refusal: Refusal) -> Iterator[str]:
         yield f"{OUTCOME} : {refusal.type};"
 
 
-def _body(body: Sequence[Statement], printer: StructuredText, refusal: Refusal) -> Iterator[str]:
+def _body(body: Sequence[Item], printer: StructuredText, refusal: Refusal, width: int = WIDTH) -> Iterator[str]:
     for kind, group in groupby(body, key=lambda s: _kind(s, printer)):
         statements = list(group)
         first = statements[0]
+        if isinstance(first, If):
+            yield from commented(list(_sides(first, printer, refusal, width)), _note_of(first, printer.names), width)
+            continue
         if isinstance(first, Solve):
             yield from commented([*solve_lines(first, printer), ""], respelled(first.note, printer.names))
             continue
@@ -97,26 +102,51 @@ def _body(body: Sequence[Statement], printer: StructuredText, refusal: Refusal) 
             lines = refusal.lines([s for s in statements if isinstance(s, Require)], printer)
             yield from commented(lines, respelled(first.comment, printer.names))
         elif isinstance(kind[0], str):
-            yield from commented(_choice(kind[0], lets, printer), _notes(lets, printer.names))
+            yield from commented(_choice(kind[0], lets, printer, width), _notes(lets, printer.names), width)
         else:
-            yield from _assignments(lets, printer)
+            yield from _assignments(lets, printer, width)
+
+
+def _sides(choice: If, printer: StructuredText, refusal: Refusal, width: int) -> Iterator[str]:
+    """A choice, each side with what it alone needs. Notes of what both bind stand above it."""
+
+    def side(items: Sequence[Item]) -> list[str]:
+        return indented(list(_body(_unnoted(items, choice.names), printer, refusal, width - INSIDE)))
+
+    yield from wrapped(f"IF {printer.print(choice.condition)} THEN", width)
+    yield from side(choice.holds)
+    match choice.fails:
+        case (If() as other,) if not (note := _note_of(other, printer.names)) or note == _note_of(choice, printer.names):
+            first, *others = _sides(other, printer, refusal, width - INSIDE)
+            yield from (f"ELS{first}", *others)
+        case _:
+            yield from ("ELSE", *side(choice.fails), "END_IF")
+
+
+def _note_of(choice: If, names: Mapping[str, str]) -> str:
+    return _notes([s for s in choice.holds if isinstance(s, Let) and s.name in choice.names], names)
+
+
+def _unnoted(side: Sequence[Item], names: Sequence[sp.Symbol]) -> list[Item]:
+    """A side without the notes that stand above the choice."""
+    return [replace(s, note="", turn_of="") if isinstance(s, Let) and s.name in names else s for s in side]
 
 
 Kind = tuple[Status | str | None, object, bool]
 
 
-def _kind(statement: Statement, printer: StructuredText) -> Kind:
+def _kind(statement: Item, printer: StructuredText) -> Kind:
     """What statements in a row have in common that are printed together.
 
     Conditions that refuse alike, about the same subject, are one condition. Those on the size of inputs stay apart: AND
     evaluates both sides, and what follows them is defined only where they hold. Selections by one condition are one IF.
     """
-    if isinstance(statement, Solve | Iterate | Call | FindRoot):
+    if isinstance(statement, Solve | Iterate | Call | FindRoot | If):
         return None, statement, False
     if isinstance(statement, Require):
         subject = None if statement.reason is None else statement.reason.subject
         return statement.otherwise, subject, all(map(is_size_test, sp.And.make_args(statement.condition)))
-    if isinstance(statement.value, Select):
+    if isinstance(statement.value, Select) and limits_of(statement.value) is None:
         return printer.print(statement.value.args[0]), "", False
     return None, "", False
 
@@ -125,26 +155,35 @@ def _notes(lets: Sequence[Let], names: Mapping[str, str]) -> str:
     return "; ".join(dict.fromkeys(respelled(let.comment, names) for let in lets if let.comment))
 
 
-def _assignments(lets: Sequence[Let], printer: StructuredText) -> Iterator[str]:
+def _assignments(lets: Sequence[Let], printer: StructuredText, width: int) -> Iterator[str]:
     comment = ""
     for let in lets:
-        lines = wrapped(_assignment(let, let.value, printer))
-        yield from commented(lines, "" if let.comment == comment else respelled(let.comment, printer.names))
+        lines = wrapped(_assignment(let, let.value, printer), width)
+        yield from commented(lines, "" if let.comment == comment else respelled(let.comment, printer.names), width)
         comment = let.comment
 
 
-def _choice(condition: str, lets: Sequence[Let], printer: StructuredText) -> list[str]:
-    """Selections by one condition: a single short one as SEL, others as IF."""
+def _choice(condition: str, lets: Sequence[Let], printer: StructuredText, width: int) -> list[str]:
+    """Selections by one condition: a single one that is short or between slight values as SEL, others as IF."""
     whole = [_assignment(let, let.value, printer) for let in lets]
-    if len(whole) == 1 and len(whole[0]) <= _SHORT:
-        return whole
-    return [
-        *wrapped(f"IF {condition} THEN"),
-        *indented([line for let in lets for line in wrapped(_assignment(let, let.value.args[1], printer))]),
-        "ELSE",
-        *indented([line for let in lets for line in wrapped(_assignment(let, let.value.args[2], printer))]),
-        "END_IF",
-    ]
+    if len(lets) == 1 and (len(whole[0]) <= _SHORT or all(map(_is_slight, lets[0].value.args[1:]))):
+        return wrapped(whole[0], width)
+
+    def side(place: int) -> list[str]:
+        values = [_assignment(let, let.value.args[place], printer) for let in lets]
+        return indented([line for value in values for line in wrapped(value, width - INSIDE)])
+
+    return [*wrapped(f"IF {condition} THEN", width), *side(1), "ELSE", *side(2), "END_IF"]
+
+
+def _is_slight(value: sp.Expr) -> bool:
+    """Whether a value takes one operation at most, and no division."""
+    inner = [a for a in value.args if a != -1]
+    return isinstance(value, sp.Symbol | sp.Number | sp.Add | sp.Mul | Root) and all(_is_atom(a) for a in inner)
+
+
+def _is_atom(value: sp.Expr) -> bool:
+    return not value.args or (-value).is_Symbol
 
 
 def _assignment(let: Let, value: sp.Expr, printer: StructuredText) -> str:

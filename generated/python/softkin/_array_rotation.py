@@ -11,7 +11,7 @@ def made_rotations(rotation: Rotation) -> tuple[Rotation, Codes]:
     """The rotations as they are used, and the statuses of the rows: what is no rotation is refused."""
     (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
     status = passed(rotation)
-    # numbers of reasonable size
+    # inputs must be numbers, and of reasonable size
     require(
         status,
         (
@@ -29,7 +29,7 @@ def made_rotations(rotation: Rotation) -> tuple[Rotation, Codes]:
     askew_yz = absolute(r12*r13 + r22*r23 + r32*r33)
 
     def elsewhere_made_r11(r11: Real, r13: Real, r21: Real, r23: Real, r31: Real, r33: Real) -> Reals:
-        length_z = sqrt(r13*r13 + r23*r23 + r33*r33)  # the direction of the tool is kept
+        length_z = sqrt(r13*r13 + r23*r23 + r33*r33)  # z keeps its direction, which is that of the tool
         divisor_z = select(length_z > 0.5, length_z, 1.0)
         unit_z1 = r13/divisor_z
         unit_z2 = r23/divisor_z
@@ -38,7 +38,7 @@ def made_rotations(rotation: Rotation) -> tuple[Rotation, Codes]:
         across_z1 = r11 - along_z*unit_z1
         across_z2 = r21 - along_z*unit_z2
         across_z3 = r31 - along_z*unit_z3
-        # x is made perpendicular to it
+        # x is made perpendicular to z
         length_x = sqrt(across_z1*across_z1 + across_z2*across_z2 + across_z3*across_z3)
         divisor_x = select(length_x > 0.5, length_x, 1.0)
         made_r11 = across_z1/divisor_x

@@ -28,10 +28,12 @@ Singularities:
     determinant: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 143 additions, 189 multiplications, 21 divisions, 0 square roots, 14 sines
-    inverse: 76235 additions, 124331 multiplications, 6685 divisions, 3143 square roots, 5316 sines
-    inverse, all 16 branches open: 1219265 additions, 1988621 multiplications, 106825 divisions, 50258 square roots, 85056 sines
-    the search along A6: at most 760 passes, all of which are counted
+    forward: 142 additions, 186 multiplications, 21 divisions, 0 square roots, 14 sines
+    inverse: 76175 additions, 124235 multiplications, 6665 divisions, 3138 square roots, 5304 sines
+    inverse, all 16 branches open: 1218785 additions, 1987760 multiplications, 106640 divisions, 50208 square roots, 84864 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 28 additions, 50 multiplications, 11 divisions, 3 square roots, 12 sines
+    root scan along A6: at most 760 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
 answers with the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist,
@@ -397,73 +399,73 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             raise self._refusal("upper_a6: A6: upper limit of the axis, both 0: no limit", upper_a6=upper_a6)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: no limit
+        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: whether it has no limits
         effective_lower_a4 = lower_a4
         effective_upper_a4 = upper_a4
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
         lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
         highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
             raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
-        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: no limit
+        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: whether it has no limits
         effective_lower_a5 = lower_a5
         effective_upper_a5 = upper_a5
         tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
         lowest_a5 = -1e12 if unlimited_a5 else effective_lower_a5 - tolerance_a5
         highest_a5 = 1e12 if unlimited_a5 else effective_upper_a5 + tolerance_a5
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a5 = (not unlimited_a5) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
         mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
         if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
             raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
-        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: no limit
+        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: whether it has no limits
         effective_lower_a6 = lower_a6
         effective_upper_a6 = upper_a6
         tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
         lowest_a6 = -1e12 if unlimited_a6 else effective_lower_a6 - tolerance_a6
         highest_a6 = 1e12 if unlimited_a6 else effective_upper_a6 + tolerance_a6
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a6 = (not unlimited_a6) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
-        machine_scale = a1 + a2 + d4  # a length of the machine
-        effective_q3_tried = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
-        searched = abs(j6_offset_x) > 0.0  # whether to search along A6
+        machine_scale = a1 + a2 + d4  # characteristic length of the machine
+        effective_q3_tried = sqrt(a3*a3 + d4*d4)  # effective length of the arm that q3 turns
+        searched = abs(j6_offset_x) > 0.0  # whether to scan A6 for a root
         machine_scale_times_free_angle = 1e-11*machine_scale
         a2_plus_effective_q3_tried = a2 + effective_q3_tried
         a2_minus_effective_q3_tried = a2 - effective_q3_tried
@@ -495,7 +497,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
 
     def _try_joint(self, given: Values) -> Values | Status:
-        """What a trial leaves of the closure, its slope, and what may turn fast with the joint."""
+        """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
         (
             free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
             goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_elbow, wanted_shoulder,
@@ -515,16 +517,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # the point that the last joints turn about
+        # wrist centre: the point in which the last axes intersect
         wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*j6_offset_x - d6*goal_r13
         wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*j6_offset_x - d6*goal_r23
-        # q1: of the point from its axis
+        # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
         slope_wrist_x_tried = j6_offset_x*(goal_r12*cos_q6_tried + goal_r11*sin_q6_tried)
         slope_wrist_y_tried = j6_offset_x*(goal_r22*cos_q6_tried + goal_r21*sin_q6_tried)
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
-            along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
+            along_q1_tried = wanted_shoulder*wrist_x_tried  # rotation by q1 that points the arm at the point
             if distance_q1_tried > machine_scale_times_free_angle:
                 length_q1_tried = distance_q1_tried
                 slope_distance_q1_tried = (
@@ -547,26 +549,27 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             slope_across_q1_tried = wanted_shoulder*slope_wrist_y_tried
             slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)*one_by_distance_q1_tried
         else:
-            chosen_q1 = freed_angle if freed == 0 else free_a1  # q1, where it is free
+            chosen_q1 = freed_angle if freed == 0 else free_a1  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
             slope_cos_q1_tried = 0.0
             slope_sin_q1_tried = 0.0
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
         wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*j6_offset_x - d6*goal_r33
-        wrist_z_from_q1_tried = wrist_z_tried - d1  # what the unknown links must span
+        wrist_z_from_q1_tried = wrist_z_tried - d1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
         part_of_one_less_cos_q3_tried = a2_plus_effective_q3_tried - reach_tried
         part_of_one_less_cos_q3_tried_2 = a2_plus_effective_q3_tried + reach_tried
-        # q3: law of cosines in the x_from_q1² + z_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3_tried = part_of_one_less_cos_q3_tried*part_of_one_less_cos_q3_tried_2
         part_of_one_plus_cos_q3_tried = a2_minus_effective_q3_tried - reach_tried
         part_of_one_plus_cos_q3_tried_2 = a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried*part_of_one_plus_cos_q3_tried_2
-        # twice the scale, with the rounding of its parts
-        both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = j6_offset_x*(goal_r32*cos_q6_tried + goal_r31*sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried*cos_q1_tried + slope_wrist_y_tried*sin_q1_tried + slope_cos_q1_tried*wrist_x_tried
@@ -585,24 +588,28 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_one_plus_cos_q3_tried = (
             (part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried)*slope_reach_tried
         )
-        if both_q3_tried > 0.0:
-            sum_q3_tried = both_q3_tried
-            slope_both_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-            slope_sum_q3_tried = slope_both_q3_tried
+        if sum_of_cos_q3_tried > 0.0:
+            divisor_of_cos_q3_tried = sum_of_cos_q3_tried
+            slope_sum_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+            slope_divisor_of_cos_q3_tried = slope_sum_of_cos_q3_tried
         else:
-            sum_q3_tried = 1.0
-            slope_sum_q3_tried = 0.0
-        one_by_both_q3_tried = 1.0/sum_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_both_q3_tried
+            divisor_of_cos_q3_tried = 1.0
+            slope_divisor_of_cos_q3_tried = 0.0
+        one_by_sum_of_cos_q3_tried = 1.0/divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_of_cos_q3_tried
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
-        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
+        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
         root_of_sin_swing_q3_tried = (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
-        sin_swing_q3_tried = 2.0*one_by_both_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
+        sin_swing_q3_tried = 2.0*one_by_sum_of_cos_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
-            (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried - slope_sum_q3_tried*cos_swing_q3_tried)
-            *one_by_both_q3_tried
+            (
+                slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
+                - slope_divisor_of_cos_q3_tried*cos_swing_q3_tried
+            )
+            *one_by_sum_of_cos_q3_tried
         )
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
@@ -613,8 +620,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else 0.0
         )
         slope_sin_swing_q3_tried = (
-            (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_sum_q3_tried*sin_swing_q3_tried)
-            *one_by_both_q3_tried
+            (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_divisor_of_cos_q3_tried*sin_swing_q3_tried)
+            *one_by_sum_of_cos_q3_tried
         )
         slope_cos_q3_tried = (
             a3_by_effective_q3_tried*slope_cos_swing_q3_tried + d4_by_effective_q3_tried*slope_sin_swing_q3_tried
@@ -622,11 +629,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_sin_q3_tried = (
             a3_by_effective_q3_tried*slope_sin_swing_q3_tried - d4_by_effective_q3_tried*slope_cos_swing_q3_tried
         )
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
             arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
-            # q2: linear pair in the x_from_q1 and z_from_q1 equations
+            # rotation by q2 that takes the arm to the point that it must reach
             along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
             across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
             part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
@@ -664,7 +671,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)*one_by_root_of_length_q2_tried
             )
         else:
-            chosen_q2 = freed_angle if freed == 1 else free_a2  # q2, where it is free
+            chosen_q2 = freed_angle if freed == 1 else free_a2  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
             slope_cos_q2_tried = 0.0
@@ -706,7 +713,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
 
     def _finish_root(self, given: Values) -> Values | Status:
-        """The joints at a root, improved by Newton's method, and whether they are wanted."""
+        """The joints at a root, improved by Newton's method, and whether they are on the branch."""
         (
             free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
             goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_crossing, wanted_elbow,
@@ -730,49 +737,52 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         size_of_j6_offset_x = k.size_of_j6_offset_x
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # the point that the last joints turn about
+        # wrist centre: the point in which the last axes intersect
         wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*j6_offset_x - d6*goal_r13
         wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*j6_offset_x - d6*goal_r23
-        # q1: of the point from its axis
+        # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
-            along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
+            along_q1_tried = wanted_shoulder*wrist_x_tried  # rotation by q1 that points the arm at the point
             length_q1_tried = distance_q1_tried if distance_q1_tried > machine_scale_times_free_angle else 1.0
             cos_q1_tried = along_q1_tried/length_q1_tried
             across_q1_tried = wanted_shoulder*wrist_y_tried
             sin_q1_tried = across_q1_tried/length_q1_tried
         else:
-            chosen_q1 = freed_angle if freed == 0 else free_a1  # q1, where it is free
+            chosen_q1 = freed_angle if freed == 0 else free_a1  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
         wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*j6_offset_x - d6*goal_r33
-        wrist_z_from_q1_tried = wrist_z_tried - d1  # what the unknown links must span
+        wrist_z_from_q1_tried = wrist_z_tried - d1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
-        # q3: law of cosines in the x_from_q1² + z_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3_tried = (a2_plus_effective_q3_tried + reach_tried)*(a2_plus_effective_q3_tried - reach_tried)
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = (
             (reach_tried - a2_minus_effective_q3_tried)*(a2_minus_effective_q3_tried + reach_tried)
         )
-        # twice the scale, with the rounding of its parts
-        both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        sum_q3_tried = both_q3_tried if both_q3_tried > 0.0 else 1.0
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/sum_q3_tried
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        divisor_of_cos_q3_tried = sum_of_cos_q3_tried if sum_of_cos_q3_tried > 0.0 else 1.0
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
-        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
+        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
         sin_swing_q3_tried = (
-            2.0*(sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)*sign_elbow_tried/sum_q3_tried
+            2.0*(sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)*sign_elbow_tried
+            /divisor_of_cos_q3_tried
         )
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
             arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
-            # q2: linear pair in the x_from_q1 and z_from_q1 equations
+            # rotation by q2 that takes the arm to the point that it must reach
             along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
             across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
             part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
@@ -784,7 +794,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_q2_tried = along_q2_tried/length_q2_tried
             sin_q2_tried = across_q2_tried/length_q2_tried
         else:
-            chosen_q2 = freed_angle if freed == 1 else free_a2  # q2, where it is free
+            chosen_q2 = freed_angle if freed == 1 else free_a2  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
         r21_from_q1_tried = goal_r21*cos_q1_tried - goal_r11*sin_q1_tried
@@ -890,7 +900,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     - goal_r13*r23_at_q5
                 )
             )
-            # of the pose, in lengths of the machine and radians
+            # pose error, in characteristic lengths and radians
             error = sqrt(
                 error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4 + error_5*error_5 + error_6*error_6
             )
@@ -960,8 +970,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             product_5_5 = 1e-12 + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4 + r23_at_q5*r23_at_q5
             product_5_6 = r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5 - r21_at_q23*sin_q23
             product_6_6 = 1.000000000001 + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23
-            # of the shortest step that lets the error vanish
-            _, share_1, share_2, share_3, share_4, share_5, share_6 = solve(
+            # damped least squares: the shortest step that cancels the error
+            _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
                     (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
@@ -972,21 +982,21 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 ),
                 ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
             )
-            step_q1 = share_6 + rate_1_1*share_1 + rate_2_1*share_2
-            part_of_step_q2 = share_5*cos_q1 - share_4*sin_q1
-            step_q2 = part_of_step_q2 + rate_1_2*share_1 + rate_2_2*share_2 + rate_3_2*share_3
-            step_q3 = part_of_step_q2 + rate_1_3*share_1 + rate_2_3*share_2 + rate_3_3*share_3
+            step_q1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1
+            part_of_step_q2 = multiplier_5*cos_q1 - multiplier_4*sin_q1
+            step_q2 = part_of_step_q2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2
+            step_q3 = part_of_step_q2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3
             step_q4 = (
-                r11_at_q23*share_4 + r21_at_q23*share_5 + rate_1_4*share_1 + rate_2_4*share_2 + rate_3_4*share_3
-                - share_6*sin_q23
+                multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4 + multiplier_4*r11_at_q23
+                + multiplier_5*r21_at_q23 - multiplier_6*sin_q23
             )
             step_q5 = (
-                r12_at_q4*share_4 + r22_at_q4*share_5 + r32_at_q4*share_6 + rate_1_5*share_1 + rate_2_5*share_2
-                + rate_3_5*share_3
+                multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5 + multiplier_4*r12_at_q4
+                + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4
             )
             step_q6 = (
-                r13_at_q5*share_4 + r23_at_q5*share_5 + r33_at_q5*share_6 + rate_1_6*share_1 + rate_2_6*share_2
-                + rate_3_6*share_3
+                multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6 + multiplier_4*r13_at_q5
+                + multiplier_5*r23_at_q5 + multiplier_6*r33_at_q5
             )
             size = (
                 step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4 + step_q5*step_q5 + step_q6*step_q6
@@ -1003,7 +1013,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             passes = 1 + passes
         else:
             return Status.UNREACHABLE
-        # of the Jacobian there, positions in lengths of the machine
+        # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
                 (rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6),
@@ -1024,13 +1034,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         return (fits, q1, q2, q3, q4, q5, q6)
 
     def _find_root(self, given: Values) -> Values | Status:
-        """The joints at the root that is nearest to the start; zeros where none is looked for."""
+        """The joints at the root that is nearest to the start; zeros where the machine needs no scan."""
         (
             free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
             goal_r33, goal_x, goal_y, goal_z, looked_for, start, wanted_crossing, wanted_elbow, wanted_shoulder,
             wanted_wrist,
         ) = given
-        # the search along A6
+        # root scan along A6
         found = nearest_root(
             self._try_joint,
             self._finish_root,
@@ -1064,7 +1074,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a2 = k.offset_a2
         offset_a6 = k.offset_a6
         searched = k.searched
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
             and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
@@ -1105,34 +1115,34 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + q1/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + q1/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + q2/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + q2/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + q3/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + q4/DEGREE  # A4: its turn
+        axis_a4 = offset_a4 + q4/DEGREE  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
-        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
         near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + q5/DEGREE  # A5: its turn
+        axis_a5 = offset_a5 + q5/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
-        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
         near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + q6/DEGREE  # A6: its turn
+        axis_a6 = offset_a6 + q6/DEGREE  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -1160,7 +1170,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         part_of_fits = k.part_of_fits
         searched = k.searched
         size_of_j6_offset_x = k.size_of_j6_offset_x
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -1226,7 +1236,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         x_minus_x_at_q6 = x - x_at_q6
         cos_q1_times_one_by_machine_scale = one_by_machine_scale*cos_q1
         sin_q1_times_one_by_machine_scale = one_by_machine_scale*sin_q1
-        # of the Jacobian, its positions in lengths of the machine
+        # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
                 (
@@ -1268,13 +1278,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
         r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
         r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        wrist_x_closed = x - d6_times_r13_at_q5  # the point that the last joints turn about
+        wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the point in which the last axes intersect
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
         margin_elbow_closed = a3_by_effective_q3_tried*sin_q3_closed + d4_by_effective_q3_tried*cos_q3_closed
         if searched:
-            # the point that the last joints turn about
+            # wrist centre: the point in which the last axes intersect
             wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*j6_offset_x
             wrist_y_tried = wrist_y_closed + (r22_at_q6*sin_q6 - r21_at_q6*cos_q6)*j6_offset_x
             margin_shoulder_tried = one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)
@@ -1305,7 +1315,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -1395,26 +1405,27 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
             and -1e9 <= ref_a6 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x_closed = x - d6*r13  # the point that the last joints turn about
+        wrist_x_closed = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y_closed = y - d6*r23
-        # q1: of the point from its axis
+        # distance of the point from the axis of q1
         distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_closed = sigma_shoulder*distance_q1_closed
-        wrist_x_from_q1_closed = ahead_q1_closed - a1  # what the unknown links must span
+        wrist_x_from_q1_closed = ahead_q1_closed - a1  # coordinate of the point that the remaining links must reach
         wrist_z_closed = z - d6*r33
-        wrist_z_from_q1_closed = wrist_z_closed - d1  # what the unknown links must span
+        wrist_z_from_q1_closed = wrist_z_closed - d1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach_closed = sqrt(
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
-        # q3: law of cosines in the x_from_q1² + z_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3_closed = (
             (a2_plus_effective_q3_tried + reach_closed)*(a2_plus_effective_q3_tried - reach_closed)
         )
@@ -1422,10 +1433,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         one_plus_cos_q3_closed = (
             (reach_closed - a2_minus_effective_q3_tried)*(a2_minus_effective_q3_tried + reach_closed)
         )
-        # twice the scale, with the rounding of its parts
-        both_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-        sum_q3_closed = both_q3_closed if both_q3_closed > 0.0 else 1.0
-        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/sum_q3_closed
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+        divisor_of_cos_q3_closed = sum_of_cos_q3_closed if sum_of_cos_q3_closed > 0.0 else 1.0
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
         # q3: out of reach
         if not (searched or (-1.0000000000005 <= cos_swing_q3_closed <= 1.0000000000005)):
             missing = (
@@ -1442,7 +1453,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         free_a2 = (ref_a2 - offset_a2)*DEGREE
         free_a6 = (ref_a6 - offset_a6)*DEGREE
-        # A6: where it meets what is left of the closure
+        # root scan along A6
         found = self._find_root(
             (
                 free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, free_a6,
@@ -1463,9 +1474,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q5 = found_q5
             q6 = found_q6
         else:
-            # its reference where it is free
+            # in the singularity: the angle of the reference
             if distance_q1_closed > machine_scale_times_free_angle:
-                along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
+                along_q1_closed = sigma_shoulder*wrist_x_closed  # rotation by q1 that points the arm at the point
                 cos_q1_closed = along_q1_closed/distance_q1_closed
                 across_q1_closed = sigma_shoulder*wrist_y_closed
                 sin_q1_closed = across_q1_closed/distance_q1_closed
@@ -1473,15 +1484,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 cos_q1_closed = cos(free_a1)
                 sin_q1_closed = sin(free_a1)
             q1 = arctan2(sin_q1_closed + 0.0, cos_q1_closed + 0.0)
-            sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
+            sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # sine squared, times the squared scale
             sin_swing_q3_closed = (
-                2.0*(sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow/sum_q3_closed
+                2.0*(sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
+                /divisor_of_cos_q3_closed
             )
-            # its reference where it is free
+            # in the singularity: the angle of the reference
             if reach_closed > machine_scale_times_free_angle:
                 arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed
                 arm_across_q2_closed = a2 + effective_q3_tried*cos_swing_q3_closed
-                # q2: linear pair in the x_from_q1 and z_from_q1 equations
+                # rotation by q2 that takes the arm to the point that it must reach
                 along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
                 across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
                 part_of_length_q2_closed = across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed
@@ -1492,6 +1504,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 cos_q2_closed = cos(free_a2)
                 sin_q2_closed = sin(free_a2)
             q2 = arctan2(sin_q2_closed + 0.0, cos_q2_closed + 0.0)
+            # addition theorem: plus the angle of the direction from which it is measured
             cos_q3_closed = a3_by_effective_q3_tried*cos_swing_q3_closed + d4_by_effective_q3_tried*sin_swing_q3_closed
             sin_q3_closed = a3_by_effective_q3_tried*sin_swing_q3_closed - d4_by_effective_q3_tried*cos_swing_q3_closed
             q3 = arctan2(sin_q3_closed + 0.0, cos_q3_closed + 0.0)
@@ -1500,9 +1513,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
             r33_from_q123_closed = r33*cos_q23_closed + r13_from_q1_closed*sin_q23_closed
             r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
-            # q4: direction and distance of a point
+            # polar coordinates: the radius at angle q4
             radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
-            # q4: polar angle in the r33 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the reference
             if radius_q4_closed > 1e-11:
                 direction_x_q4_closed = sigma_wrist*r33_from_q123_closed
                 direction_y_q4_closed = -sigma_wrist*r23_from_q1_closed
@@ -1527,34 +1540,34 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 direction_x_q4_closed*r22_from_q1_closed + direction_y_q4_closed*r32_from_q123_closed
             )
             q6 = arctan2(scaled_r21_from_q1234_closed + 0.0, scaled_r22_from_q1234_closed + 0.0)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + q1/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + q1/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + q2/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + q2/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + q3/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + q4/DEGREE  # A4: its turn
+        axis_a4 = offset_a4 + q4/DEGREE  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
-        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
         near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + q5/DEGREE  # A5: its turn
+        axis_a5 = offset_a5 + q5/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
-        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
         near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + q6/DEGREE  # A6: its turn
+        axis_a6 = offset_a6 + q6/DEGREE  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -1661,7 +1674,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a5 = k.offset_a5
         one_by_machine_scale = k.one_by_machine_scale
         part_of_fits = k.part_of_fits
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -1725,7 +1738,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         x_minus_x_at_q6 = x - x_at_q6
         cos_q1_times_one_by_machine_scale = one_by_machine_scale*cos_q1
         sin_q1_times_one_by_machine_scale = one_by_machine_scale*sin_q1
-        # of the Jacobian, its positions in lengths of the machine
+        # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
                 (
@@ -1777,7 +1790,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9

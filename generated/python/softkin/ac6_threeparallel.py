@@ -29,8 +29,10 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 51 additions, 52 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 239 additions, 282 multiplications, 53 divisions, 18 square roots, 26 sines
-    inverse, all 8 branches open: 1681 additions, 1941 multiplications, 361 divisions, 130 square roots, 208 sines
+    inverse: 99 additions, 72 multiplications, 24 divisions, 5 square roots, 6 sines
+    inverse, all 8 branches open: 785 additions, 576 multiplications, 192 divisions, 40 square roots, 48 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 101 additions, 155 multiplications, 19 divisions, 10 square roots, 22 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -387,72 +389,72 @@ class Ac6ThreeParallel(Mechanism):
             raise self._refusal("upper_a6: A6: upper limit of the axis, both 0: no limit", upper_a6=upper_a6)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: no limit
+        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: whether it has no limits
         effective_lower_a4 = lower_a4
         effective_upper_a4 = upper_a4
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
         lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
         highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
             raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
-        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: no limit
+        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: whether it has no limits
         effective_lower_a5 = lower_a5
         effective_upper_a5 = upper_a5
         tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
         lowest_a5 = -1e12 if unlimited_a5 else effective_lower_a5 - tolerance_a5
         highest_a5 = 1e12 if unlimited_a5 else effective_upper_a5 + tolerance_a5
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a5 = (not unlimited_a5) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
         mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
         if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
             raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
-        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: no limit
+        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: whether it has no limits
         effective_lower_a6 = lower_a6
         effective_upper_a6 = upper_a6
         tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
         lowest_a6 = -1e12 if unlimited_a6 else effective_lower_a6 - tolerance_a6
         highest_a6 = 1e12 if unlimited_a6 else effective_upper_a6 + tolerance_a6
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a6 = (not unlimited_a6) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
-        machine_scale = abs(a2) + abs(a3)  # a length of the machine
-        rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
+        machine_scale = abs(a2) + abs(a3)  # characteristic length of the machine
+        rounding_q1 = 1e-34*machine_scale*machine_scale  # rounding error of a squared length
         size_q1_for_q3 = 2.0*abs(a2*a3)
         machine_scale_times_free_angle = 1e-11*machine_scale
         size_q1_for_q3_times_rounding = 1e-12*size_q1_for_q3
@@ -507,7 +509,7 @@ class Ac6ThreeParallel(Mechanism):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -569,7 +571,7 @@ class Ac6ThreeParallel(Mechanism):
         r31_at_q5 = cos_q5*sin_q234
         r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6
         r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6_times_r22_at_q5
         branch_shoulder = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
@@ -589,7 +591,7 @@ class Ac6ThreeParallel(Mechanism):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -680,25 +682,26 @@ class Ac6ThreeParallel(Mechanism):
         size_q1_for_q3 = k.size_q1_for_q3
         size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
         twice_d5 = k.twice_d5
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
             and -1e9 <= ref_a6 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)
         distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
         if not (ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1):
             missing = 0.5*(abs(d4 - distance_q1) + abs(d4 + distance_q1)) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_shoulder
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/distance_q1_squared
@@ -708,7 +711,7 @@ class Ac6ThreeParallel(Mechanism):
             sin_q1_before_q1_for_q3 = sin(free_a1)
         wrist_z = z - d6*r33
         wrist_y_from_q1_fixed = wrist_z - d1
-        # turned within rounding, where the rest can be reached
+        # turned, within rounding, to where q3 has a solution
         if ahead_squared_q1 > machine_scale_squared_times_plane:
             ahead_q1 = ahead_q1_before_q1_for_q3
             cos_q1 = cos_q1_before_q1_for_q3
@@ -716,7 +719,7 @@ class Ac6ThreeParallel(Mechanism):
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            sin_of_free_a6 = sin(free_a6)
             r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
             r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
             radius_q6_before_q1_for_q3 = sqrt(
@@ -754,7 +757,7 @@ class Ac6ThreeParallel(Mechanism):
                 )
             else:
                 cos_q6_before_q1_for_q3 = cos_of_free_a6
-                sin_q6_before_q1_for_q3 = -sin_of_free_a6
+                sin_q6_before_q1_for_q3 = sin_of_free_a6
                 if radius_q6_before_q1_for_q3 > 0.0:
                     radius_q6_rate_q1_for_q3 = (
                         (
@@ -774,12 +777,12 @@ class Ac6ThreeParallel(Mechanism):
             wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q1_for_q3
             r22_from_q1_before_q6_before_q1_for_q3 = r32*cos_q6_before_q1_for_q3 + r31*sin_q6_before_q1_for_q3
             wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3
-            # a later step needs this of q1: no larger in size than
+            # q3 has solutions where this is within its bound
             value_q1_for_q3 = (
                 wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
                 + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - a2_squared_plus_a3_squared
             )
-            # turned within rounding, where the rest can be reached
+            # turned, within rounding, to where q3 has a solution
             if abs(value_q1_for_q3) <= size_q1_for_q3:
                 ahead_q1 = ahead_q1_before_q1_for_q3
                 cos_q1 = cos_q1_before_q1_for_q3
@@ -795,7 +798,7 @@ class Ac6ThreeParallel(Mechanism):
                 wrist_x_from_q1_rate_q1_for_q3 = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3
                 r22_from_q1_before_q6_rate_q1_for_q3 = r32*cos_q6_rate_q1_for_q3 + r31*sin_q6_rate_q1_for_q3
                 wrist_y_from_q1_rate_q1_for_q3 = d5*r22_from_q1_before_q6_rate_q1_for_q3
-                # how it changes with q1
+                # its derivative by q1
                 rate_q1_for_q3 = (
                     2.0
                     *(
@@ -803,7 +806,7 @@ class Ac6ThreeParallel(Mechanism):
                         + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
                     )
                 )
-                # to the boundary of the later step
+                # turn of q1 to the bound, to first order
                 if abs(rate_q1_for_q3) > size_q1_for_q3_times_rounding:
                     excess_q1_for_q3 = (
                         value_q1_for_q3 - size_q1_for_q3
@@ -814,7 +817,7 @@ class Ac6ThreeParallel(Mechanism):
                 else:
                     turn_q1_for_q3 = 1.0
                 turn_q1_for_q3_squared = turn_q1_for_q3*turn_q1_for_q3
-                # whether it follows q6
+                # whether the first order is not enough: then q6 is chosen first
                 follows_q1_for_q3 = (
                     (turn_q1_for_q3_squared > 1e-12)
                     or (
@@ -828,7 +831,7 @@ class Ac6ThreeParallel(Mechanism):
                     along_q6_q1_for_q3 = -part_of_across_q6_q1_for_q3*r32 - part_of_across_q6_q1_for_q3_2*r31
                     across_q6_q1_for_q3 = part_of_across_q6_q1_for_q3_2*r32 - part_of_across_q6_q1_for_q3*r31
                     swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3 + along_q6_q1_for_q3*along_q6_q1_for_q3)
-                    # the arc: cosines from its centre
+                    # feasible arc: cosines of its ends
                     if swing_q6_q1_for_q3 > part_of_divisor_q6_q1_for_q3:
                         level_q6_q1_for_q3 = (
                             value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3 - along_q6_q1_for_q3*cos_q6_before_q1_for_q3
@@ -871,14 +874,14 @@ class Ac6ThreeParallel(Mechanism):
                     near_q_q1_for_q3 = sigma_wrist*(near_cos_q6_q1_for_q3*r12 + near_sin_q6_q1_for_q3*r11)
                     near_p_q1_for_q3 = (-near_cos_q6_q1_for_q3*r22 - near_sin_q6_q1_for_q3*r21)*sigma_wrist
                     near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
-                    # the earlier angle follows
-                    # it stays where every angle gives this one
+                    # the earlier angle follows the later one
+                    # it stays where every angle gives this later one
                     if near_radius_q1_for_q3 > 1e-12:
                         near_along_q1_for_q3 = (
                             sigma_wrist*(near_cos_q6_q1_for_q3*r21 - near_sin_q6_q1_for_q3*r22)*near_q_q1_for_q3
                             - (near_sin_q6_q1_for_q3*r12 - near_cos_q6_q1_for_q3*r11)*sigma_wrist*near_p_q1_for_q3
                         )
-                        # of two opposite ways
+                        # positive where the vector points along the later angle
                         near_towards_q1_for_q3 = (
                             near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3
                             if abs(near_along_q1_for_q3) <= 5e-12*near_radius_q1_for_q3
@@ -893,7 +896,7 @@ class Ac6ThreeParallel(Mechanism):
                         near_sin_q1_for_q3 = sin_q1_before_q1_for_q3
                     if distance_q1 > machine_scale_times_free_angle:
                         near_cost_q1_for_q3 = abs(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
-                        mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
+                        mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # mirror image: on the other arc
                         mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
                         mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
                         mirrored_q_q1_for_q3 = sigma_wrist*(mirrored_cos_q6_q1_for_q3*r12 + mirrored_sin_q6_q1_for_q3*r11)
@@ -901,14 +904,14 @@ class Ac6ThreeParallel(Mechanism):
                         mirrored_radius_q1_for_q3 = sqrt(
                             mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
                         )
-                        # the earlier angle follows
-                        # it stays where every angle gives this one
+                        # the earlier angle follows the later one
+                        # it stays where every angle gives this later one
                         if mirrored_radius_q1_for_q3 > 1e-12:
                             mirrored_along_q1_for_q3 = (
                                 sigma_wrist*(mirrored_cos_q6_q1_for_q3*r21 - mirrored_sin_q6_q1_for_q3*r22)*mirrored_q_q1_for_q3
                                 - (mirrored_sin_q6_q1_for_q3*r12 - mirrored_cos_q6_q1_for_q3*r11)*sigma_wrist*mirrored_p_q1_for_q3
                             )
-                            # of two opposite ways
+                            # positive where the vector points along the later angle
                             mirrored_towards_q1_for_q3 = (
                                 mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3
                                 if abs(mirrored_along_q1_for_q3) <= 5e-12*mirrored_radius_q1_for_q3
@@ -948,14 +951,14 @@ class Ac6ThreeParallel(Mechanism):
                     turned_sin_q1_for_q3 = (
                         one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
                     )
-                    # what is left of its own equation
+                    # residual of the equation of q1
                     turned_cost_q1_for_q3 = abs(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
                     best_cost_q1_for_q3 = turned_cost_q1_for_q3
                     turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
                     best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
                     best_cos_q1_for_q3 = turned_cos_q1_for_q3
                     best_sin_q1_for_q3 = turned_sin_q1_for_q3
-                # turned within rounding, where the rest can be reached
+                # turned, within rounding, to where q3 has a solution
                 if best_cost_q1_for_q3 > machine_scale_times_rounding:
                     ahead_q1 = ahead_q1_before_q1_for_q3
                     cos_q1 = cos_q1_before_q1_for_q3
@@ -964,24 +967,25 @@ class Ac6ThreeParallel(Mechanism):
                     ahead_q1 = best_ahead_q1_for_q3
                     cos_q1 = best_cos_q1_for_q3
                     sin_q1 = best_sin_q1_for_q3
-        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
+        cos_q5 = r13*sin_q1 - r23*cos_q1  # cosine and sine of q5 from the q6 radius and r32 equations
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
-        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)
         q6_radius_of_q5 = sigma_wrist*radius_q6
         q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_q6 > 1e-11:
-            along_q6 = -sigma_wrist*r21_from_q1  # q6: polar angle in the r31 and r32 equations
+            along_q6 = -sigma_wrist*r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6/radius_q6
             across_q6 = sigma_wrist*r22_from_q1
             sin_q6_before_q6_of_q3 = across_q6/radius_q6
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            sin_of_free_a6 = sin(free_a6)
             cos_q6_before_q6_of_q3 = cos_of_free_a6
-            sin_q6_before_q6_of_q3 = -sin_of_free_a6
+            sin_q6_before_q6_of_q3 = sin_of_free_a6
         r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
         r21_from_q1_before_q56_before_q6_of_q3 = (
             r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5_times_r33
@@ -989,18 +993,18 @@ class Ac6ThreeParallel(Mechanism):
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
         r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
         )
         size_of_value_q6_of_q3 = abs(value_q6_of_q3)
-        # kept where the rest can be reached
+        # moved to where q3 has a solution, if that changes the pose by rounding only
         if size_of_value_q6_of_q3 <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
         else:
-            # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
             if radius_q6 > 0.1 and size_of_value_q6_of_q3 > part_of_cos_q6:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
@@ -1017,7 +1021,7 @@ class Ac6ThreeParallel(Mechanism):
                     2.0*(wrist_x_from_q1_across*wrist_x_from_q1_fixed + wrist_y_from_q1_across*wrist_y_from_q1_fixed)
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     level_q6_of_q3 = (
                         value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
@@ -1055,13 +1059,13 @@ class Ac6ThreeParallel(Mechanism):
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
                 part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
                 part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(part_of_cost_q6_of_q3*part_of_cost_q6_of_q3 + part_of_cost_q6_of_q3_2*part_of_cost_q6_of_q3_2)
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3
                     sin_q6 = sin_q6_before_q6_of_q3
@@ -1070,16 +1074,20 @@ class Ac6ThreeParallel(Mechanism):
                     sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5_times_r33
-        wrist_x_from_q1 = ahead_q1 - d5*r21_from_q1_before_q56  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = ahead_q1 - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
             missing = (
@@ -1090,14 +1098,14 @@ class Ac6ThreeParallel(Mechanism):
                 - reach - abs(a2) - abs(a3)
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(sum_q3)
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(divisor_of_cos_q3)
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
@@ -1108,32 +1116,32 @@ class Ac6ThreeParallel(Mechanism):
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
         angle_q2 = arctan2(direction_y_q2 + 0.0, direction_x_q2 + 0.0)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_q2/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + angle_q2/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_q3 = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + angle_q3/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + angle_q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         angle_with_q4 = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)/DEGREE
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
-        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
         near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5 + 0.0)/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
-        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
         near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
+        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -1237,7 +1245,7 @@ class Ac6ThreeParallel(Mechanism):
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -1269,7 +1277,7 @@ class Ac6ThreeParallel(Mechanism):
         x_at_q5 = x_at_q4 + d4*sin_q1
         x_at_q6 = x_at_q5 - d5*r12_at_q234
         x = d6_times_r12_at_q5 + x_at_q6
-        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
         r21_at_q234 = cos_q234*sin_q1
         r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5
         d6_times_r22_at_q5 = d6*r22_at_q5
@@ -1301,7 +1309,7 @@ class Ac6ThreeParallel(Mechanism):
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9

@@ -22,8 +22,10 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 28 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
-    inverse: 79 additions, 73 multiplications, 18 divisions, 3 square roots, 5 sines
-    inverse, all 2 branches open: 125 additions, 101 multiplications, 27 divisions, 4 square roots, 10 sines
+    inverse: 46 additions, 27 multiplications, 9 divisions, 1 square roots, 3 sines
+    inverse, all 2 branches open: 91 additions, 54 multiplications, 18 divisions, 2 square roots, 6 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,

@@ -29,8 +29,10 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 59 additions, 66 multiplications, 7 divisions, 0 square roots, 14 sines
-    inverse: 146 additions, 142 multiplications, 35 divisions, 9 square roots, 12 sines
-    inverse, all 8 branches open: 937 additions, 821 multiplications, 217 divisions, 58 square roots, 96 sines
+    inverse: 100 additions, 83 multiplications, 24 divisions, 6 square roots, 6 sines
+    inverse, all 8 branches open: 793 additions, 664 multiplications, 192 divisions, 48 square roots, 48 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 12 additions, 11 multiplications, 2 divisions, 1 square roots, 6 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -394,73 +396,73 @@ class ArticulatedRobot6DOF(Mechanism):
             raise self._refusal("upper_a6: A6: upper limit of the axis, both 0: no limit", upper_a6=upper_a6)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: no limit
+        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: whether it has no limits
         effective_lower_a4 = lower_a4
         effective_upper_a4 = upper_a4
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
         lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
         highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
             raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
-        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: no limit
+        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: whether it has no limits
         effective_lower_a5 = lower_a5
         effective_upper_a5 = upper_a5
         tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
         lowest_a5 = -1e12 if unlimited_a5 else effective_lower_a5 - tolerance_a5
         highest_a5 = 1e12 if unlimited_a5 else effective_upper_a5 + tolerance_a5
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a5 = (not unlimited_a5) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
         mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
         if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
             raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
-        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: no limit
+        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: whether it has no limits
         effective_lower_a6 = lower_a6
         effective_upper_a6 = upper_a6
         tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
         lowest_a6 = -1e12 if unlimited_a6 else effective_lower_a6 - tolerance_a6
         highest_a6 = 1e12 if unlimited_a6 else effective_upper_a6 + tolerance_a6
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a6 = (not unlimited_a6) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
-        machine_scale = a1 + a2 + a3 + d4  # a length of the machine
-        effective_q3 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
-        rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
+        machine_scale = a1 + a2 + a3 + d4  # characteristic length of the machine
+        effective_q3 = sqrt(a3*a3 + d4*d4)  # effective length of the arm that q3 turns
+        rounding_q1 = 1e-34*machine_scale*machine_scale  # rounding error of a squared length
         size_q1_for_q3 = 2.0*abs(effective_q3)*a2
         d4_by_effective_q3 = d4/effective_q3
         a3_by_effective_q3 = a3/effective_q3
@@ -515,7 +517,7 @@ class ArticulatedRobot6DOF(Mechanism):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -580,7 +582,7 @@ class ArticulatedRobot6DOF(Mechanism):
         r31_at_q5 = r31_at_q4*cos_q5 + sin_q23*sin_q5
         r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
         r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6_times_r22_at_q5
         branch_arm = (wrist_x*cos_q1 + wrist_y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
@@ -602,7 +604,7 @@ class ArticulatedRobot6DOF(Mechanism):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -699,48 +701,29 @@ class ArticulatedRobot6DOF(Mechanism):
         size_q1_for_q3 = k.size_q1_for_q3
         size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
         twice_d3 = k.twice_d3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
             and -1e9 <= ref_a6 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
         if not (ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1):
             missing = 0.5*(abs(d3 - distance_q1) + abs(d3 + distance_q1)) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         wrist_z = z - d6*r33
-        wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+        wrist_y_from_q1 = wrist_z - d1  # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
-        wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
-        # a later step needs this of q1: no larger in size than
-        value_q1_for_q3 = (
-            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
-            - a2_squared_plus_effective_q3_squared
-        )
-        rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
-        # to the boundary of the later step
-        if abs(rate_q1_for_q3) > size_q1_for_q3_times_rounding:
-            excess_q1_for_q3 = (
-                value_q1_for_q3 - size_q1_for_q3
-                if value_q1_for_q3 > 0.0
-                else size_q1_for_q3 + value_q1_for_q3
-            )
-            turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
-        else:
-            turn_q1_for_q3 = 0.0
-        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-        one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/distance_q1_squared
@@ -748,37 +731,66 @@ class ArticulatedRobot6DOF(Mechanism):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
-        turned_cos_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
-        )
-        turned_sin_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
-        )
-        # what is left of its own equation
-        turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
-        # turned within rounding, where the rest can be reached
-        ahead_q1 = (
-            ahead_q1_before_q1_for_q3
-            if ahead_squared_q1 > machine_scale_squared_times_plane
-            else (
-                ahead_q1_before_q1_for_q3
-                if abs(value_q1_for_q3) <= size_q1_for_q3
-                else (
-                    ahead_q1_before_q1_for_q3
-                    if turned_cost_q1_for_q3 > machine_scale_times_rounding
-                    else turned_ahead_q1_for_q3
-                )
+        # turned, within rounding, to where q3 has a solution
+        if ahead_squared_q1 > machine_scale_squared_times_plane:
+            ahead_q1 = ahead_q1_before_q1_for_q3
+            cos_q1 = cos_q1_before_q1_for_q3
+            sin_q1 = sin_q1_before_q1_for_q3
+        else:
+            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
+            # q3 has solutions where this is within its bound
+            value_q1_for_q3 = (
+                wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+                - a2_squared_plus_effective_q3_squared
             )
-        )
-        wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
+            # turned, within rounding, to where q3 has a solution
+            if abs(value_q1_for_q3) <= size_q1_for_q3:
+                ahead_q1 = ahead_q1_before_q1_for_q3
+                cos_q1 = cos_q1_before_q1_for_q3
+                sin_q1 = sin_q1_before_q1_for_q3
+            else:
+                rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
+                # turn of q1 to the bound, to first order
+                if abs(rate_q1_for_q3) > size_q1_for_q3_times_rounding:
+                    excess_q1_for_q3 = (
+                        value_q1_for_q3 - size_q1_for_q3
+                        if value_q1_for_q3 > 0.0
+                        else size_q1_for_q3 + value_q1_for_q3
+                    )
+                    turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+                else:
+                    turn_q1_for_q3 = 0.0
+                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
+                turned_cos_q1_for_q3 = (
+                    one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
+                )
+                turned_sin_q1_for_q3 = (
+                    one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
+                )
+                # residual of the equation of q1
+                turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
+                # turned, within rounding, to where q3 has a solution
+                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
+                    ahead_q1 = ahead_q1_before_q1_for_q3
+                    cos_q1 = cos_q1_before_q1_for_q3
+                    sin_q1 = sin_q1_before_q1_for_q3
+                else:
+                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
+                    ahead_q1 = turned_ahead_q1_for_q3
+                    cos_q1 = turned_cos_q1_for_q3
+                    sin_q1 = turned_sin_q1_for_q3
+        wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
@@ -789,35 +801,18 @@ class ArticulatedRobot6DOF(Mechanism):
                 - a2_plus_effective_q3 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # turned within rounding, where the rest can be reached
-        if ahead_squared_q1 > machine_scale_squared_times_plane:
-            cos_q1 = cos_q1_before_q1_for_q3
-            sin_q1 = sin_q1_before_q1_for_q3
-        else:
-            # turned within rounding, where the rest can be reached
-            if abs(value_q1_for_q3) <= size_q1_for_q3:
-                cos_q1 = cos_q1_before_q1_for_q3
-                sin_q1 = sin_q1_before_q1_for_q3
-            else:
-                # turned within rounding, where the rest can be reached
-                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
-                    cos_q1 = cos_q1_before_q1_for_q3
-                    sin_q1 = sin_q1_before_q1_for_q3
-                else:
-                    cos_q1 = turned_cos_q1_for_q3
-                    sin_q1 = turned_sin_q1_for_q3
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
-        # its reference where it is free
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
+        # in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            # rotation by q2 that takes the arm to the point that it must reach
             along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
             across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
             across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2
@@ -832,16 +827,17 @@ class ArticulatedRobot6DOF(Mechanism):
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2 = cos(free_a2)
             sin_q2 = sin(free_a2)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3
         sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
@@ -849,9 +845,9 @@ class ArticulatedRobot6DOF(Mechanism):
         cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
         r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_q4 > 1e-11:
             direction_x_q4 = -sigma_hand*r13_from_q123
             direction_y_q4 = sigma_hand*r23_from_q1
@@ -859,16 +855,16 @@ class ArticulatedRobot6DOF(Mechanism):
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             direction_x_q4 = cos(free_a4)
             direction_y_q4 = sin(free_a4)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4 + 0.0)/DEGREE  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4 + 0.0)/DEGREE  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         q4_radius_of_q5 = sigma_hand*radius_q4
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
         near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5 + 0.0)/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
@@ -879,9 +875,10 @@ class ArticulatedRobot6DOF(Mechanism):
         r12_from_q1 = r12*cos_q1 + r22*sin_q1
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         scaled_r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
-        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
         near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + arctan2(scaled_r21_from_q1234, scaled_r22_from_q1234 + 0.0)/DEGREE  # A6: its turn
+        # A6: whole turns added
+        axis_a6 = offset_a6 + arctan2(scaled_r21_from_q1234, scaled_r22_from_q1234 + 0.0)/DEGREE
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -988,7 +985,7 @@ class ArticulatedRobot6DOF(Mechanism):
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
@@ -1020,7 +1017,7 @@ class ArticulatedRobot6DOF(Mechanism):
         x_at_q4 = x_at_q3 + a3*r11_at_q23 + d3*sin_q1
         x_at_q5 = x_at_q4 - d4*r12_at_q23
         x = d6_times_r12_at_q5 + x_at_q5
-        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
         r22_at_q23 = -cos_q23*sin_q1
         r21_at_q23 = -sin_q1*sin_q23
         r21_at_q4 = r21_at_q23*cos_q4 - cos_q1*sin_q4
@@ -1055,7 +1052,7 @@ class ArticulatedRobot6DOF(Mechanism):
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
             and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9

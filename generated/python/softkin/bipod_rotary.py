@@ -263,28 +263,30 @@ class BipodRotary(OffsetKinematics):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
-        machine_scale = displacement + inner_arm + outer_arm + tcp_displacement  # a length of the machine
-        assembly_sign = 1.0 if tcp_above else -1.0  # assembly mode of this machine
+        # characteristic length of the machine
+        machine_scale = displacement + inner_arm + outer_arm + tcp_displacement
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = 1.0 if tcp_above else -1.0
         part_of_normal_divisor = 1e-22*outer_arm*outer_arm
         twice_outer_arm = 2.0*outer_arm
         outer_arm_squared_times_rounding = 1e-12*outer_arm*outer_arm
@@ -330,27 +332,28 @@ class BipodRotary(OffsetKinematics):
         part_of_normal_divisor = k.part_of_normal_divisor
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
         twice_outer_arm = k.twice_outer_arm
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        pivot_1_y = -inner_arm*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        pivot_2_y = -inner_arm*sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        # the square of the height over the centres
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
             *between_centres/normal_square
@@ -358,14 +361,14 @@ class BipodRotary(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
-        foot_x = 0.5*apart_2_x
-        rise = root(height_square/normal_square)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        foot_y = 0.5*apart_2_y
-        y = foot_y + pivot_1_y + apart_2_x*rise
-        span_1_x = x - tcp_displacement_minus_displacement  # rod 1
+        foot_x = 0.5*centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        height_by_normal = root(height_square/normal_square)*assembly_sign  # height, as a multiple of the normal
+        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
+        foot_y = 0.5*centre_1_to_2_y
+        y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal
+        span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
         branch_knee_1 = (span_1_x*sin_a1 - y*cos_a1)/outer_arm
-        span_2_x = tcp_displacement_minus_displacement + x  # rod 2
+        span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
         branch_knee_2 = (-y*cos_a2 - span_2_x*sin_a2)/outer_arm
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_knee_1, branch_knee_2))
 
@@ -380,27 +383,28 @@ class BipodRotary(OffsetKinematics):
         part_of_normal_divisor = k.part_of_normal_divisor
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
         twice_outer_arm = k.twice_outer_arm
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        pivot_1_y = -inner_arm*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        pivot_2_y = -inner_arm*sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        # the square of the height over the centres
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
             *between_centres/normal_square
@@ -433,7 +437,7 @@ class BipodRotary(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
@@ -443,19 +447,20 @@ class BipodRotary(OffsetKinematics):
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        span_1_x = x - tcp_displacement_minus_displacement  # rod 1
+        span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
         y_squared = y*y
-        effective_a1 = root(y_squared + span_1_x*span_1_x)  # effective length that the angle turns
+        effective_a1 = root(y_squared + span_1_x*span_1_x)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm)*(effective_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1)*(effective_a1 - inner_arm_minus_outer_arm)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
@@ -464,18 +469,19 @@ class BipodRotary(OffsetKinematics):
                 - effective_a1 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = tcp_displacement_minus_displacement + x  # rod 2
-        effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length that the angle turns
+        span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
+        effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2)*(effective_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)*(effective_a2 + inner_arm_plus_outer_arm)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
@@ -484,19 +490,21 @@ class BipodRotary(OffsetKinematics):
                 - effective_a2 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/effective_a1
         rod_1_x = span_1_x + inner_arm*cos_a1
         sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        pivot_1_y = -inner_arm*sin_a1
         rod_1_y = y - pivot_1_y
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (span_2_x*cos_swing_a2 + y*sin_swing_a2)/effective_a2
         rod_2_x = span_2_x - inner_arm*cos_a2
         sin_a2 = (span_2_x*sin_swing_a2 - y*cos_swing_a2)/effective_a2
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
+        pivot_2_y = -inner_arm*sin_a2
         rod_2_y = y - pivot_2_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -505,14 +513,14 @@ class BipodRotary(OffsetKinematics):
             return Diagnosis(
                 Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
             )
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -563,27 +571,28 @@ class BipodRotary(OffsetKinematics):
         part_of_normal_divisor = k.part_of_normal_divisor
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
         twice_outer_arm = k.twice_outer_arm
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        pivot_1_y = -inner_arm*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        pivot_2_y = -inner_arm*sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        # the square of the height over the centres
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
             *between_centres/normal_square
@@ -591,14 +600,14 @@ class BipodRotary(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
-        foot_y = 0.5*apart_2_y
-        rise = root(height_square/normal_square)*assembly_sign
-        y = foot_y + pivot_1_y + apart_2_x*rise
-        foot_x = 0.5*apart_2_x
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        span_1_x = x - tcp_displacement_minus_displacement  # rod 1
+        foot_y = 0.5*centre_1_to_2_y
+        height_by_normal = root(height_square/normal_square)*assembly_sign  # height, as a multiple of the normal
+        y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal
+        foot_x = 0.5*centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
+        span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
         margin_stretched_1 = (span_1_x*sin_a1 - y*cos_a1)/outer_arm
-        span_2_x = tcp_displacement_minus_displacement + x  # rod 2
+        span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
         margin_stretched_2 = (-y*cos_a2 - span_2_x*sin_a2)/outer_arm
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
@@ -622,27 +631,28 @@ class BipodRotary(OffsetKinematics):
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
         twice_inner_arm = k.twice_inner_arm
         twice_outer_arm = k.twice_outer_arm
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        pivot_1_y = -inner_arm*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        pivot_2_y = -inner_arm*sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        # the square of the height over the centres
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
             *between_centres/normal_square
@@ -650,18 +660,18 @@ class BipodRotary(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
-        foot_x = 0.5*apart_2_x
-        rise = root(height_square/normal_square)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
+        foot_x = 0.5*centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        height_by_normal = root(height_square/normal_square)*assembly_sign  # height, as a multiple of the normal
+        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
         twice_x = 2.0*x
         slope_1_by_x = twice_x + twice_inner_arm*cos_a1 - part_of_slope_1_by_x
-        foot_y = 0.5*apart_2_y
-        y = foot_y + pivot_1_y + apart_2_x*rise
+        foot_y = 0.5*centre_1_to_2_y
+        y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal
         twice_y = 2.0*y
         slope_1_by_y = twice_y + twice_inner_arm*sin_a1
         slope_2_by_x = part_of_slope_1_by_x + twice_x - twice_inner_arm*cos_a2
         slope_2_by_y = twice_y + twice_inner_arm*sin_a2
-        # of the closure by the position: zero in a type 2 singularity
+        # determinant dPhi/dx: zero in a type 2 singularity
         determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x
         # nothing controls the plate
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
@@ -703,7 +713,7 @@ class BipodRotary(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
@@ -713,21 +723,22 @@ class BipodRotary(OffsetKinematics):
         if not (abs(point_z - z) <= machine_scale_times_plane):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        flange_x = x - point_x  # the flange behind the point
-        span_1_x = flange_x - tcp_displacement_minus_displacement  # rod 1
-        flange_y = y - point_y  # the flange behind the point
+        flange_x = x - point_x  # position of the flange: the point less its offset
+        span_1_x = flange_x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
+        flange_y = y - point_y  # position of the flange: the point less its offset
         flange_y_squared = flange_y*flange_y
-        effective_a1 = root(flange_y_squared + span_1_x*span_1_x)  # effective length that the angle turns
+        effective_a1 = root(flange_y_squared + span_1_x*span_1_x)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm)*(effective_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1)*(effective_a1 - inner_arm_minus_outer_arm)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
@@ -736,18 +747,19 @@ class BipodRotary(OffsetKinematics):
                 - effective_a1 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = flange_x + tcp_displacement_minus_displacement  # rod 2
-        effective_a2 = root(flange_y_squared + span_2_x*span_2_x)  # effective length that the angle turns
+        span_2_x = flange_x + tcp_displacement_minus_displacement  # rod 2: known part of its vector
+        effective_a2 = root(flange_y_squared + span_2_x*span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2)*(effective_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)*(effective_a2 + inner_arm_plus_outer_arm)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
@@ -756,19 +768,21 @@ class BipodRotary(OffsetKinematics):
                 - effective_a2 - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = (span_1_x*cos_swing_a1 - flange_y*sin_swing_a1)/effective_a1
         rod_1_x = span_1_x + inner_arm*cos_a1
         sin_a1 = (flange_y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        pivot_1_y = -inner_arm*sin_a1
         rod_1_y = flange_y - pivot_1_y
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (span_2_x*cos_swing_a2 + flange_y*sin_swing_a2)/effective_a2
         rod_2_x = span_2_x - inner_arm*cos_a2
         sin_a2 = (span_2_x*sin_swing_a2 - flange_y*cos_swing_a2)/effective_a2
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
+        pivot_2_y = -inner_arm*sin_a2
         rod_2_y = flange_y - pivot_2_y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -777,14 +791,14 @@ class BipodRotary(OffsetKinematics):
             return Diagnosis(
                 Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
             )
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -802,27 +816,28 @@ class BipodRotary(OffsetKinematics):
         part_of_normal_divisor = k.part_of_normal_divisor
         tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
         twice_outer_arm = k.twice_outer_arm
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
+        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        pivot_1_y = -inner_arm*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        pivot_2_y = -inner_arm*sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        # the square of the height over the centres
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
             *between_centres/normal_square
@@ -830,14 +845,14 @@ class BipodRotary(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
-        foot_y = 0.5*apart_2_y
-        rise = root(height_square/normal_square)*assembly_sign
-        flange_y = foot_y + pivot_1_y + apart_2_x*rise
-        foot_x = 0.5*apart_2_x
-        flange_x = foot_x + pivot_1_x - apart_2_y*rise
-        span_1_x = flange_x - tcp_displacement_minus_displacement  # rod 1
+        foot_y = 0.5*centre_1_to_2_y
+        height_by_normal = root(height_square/normal_square)*assembly_sign  # height, as a multiple of the normal
+        flange_y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal
+        foot_x = 0.5*centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        flange_x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
+        span_1_x = flange_x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
         branch_knee_1 = (span_1_x*sin_a1 - flange_y*cos_a1)/outer_arm
-        span_2_x = flange_x + tcp_displacement_minus_displacement  # rod 2
+        span_2_x = flange_x + tcp_displacement_minus_displacement  # rod 2: known part of its vector
         branch_knee_2 = (-flange_y*cos_a2 - span_2_x*sin_a2)/outer_arm
         return (branch_knee_1, branch_knee_2)
 

@@ -14,7 +14,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 6 additions, 5 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 43 additions, 49 multiplications, 12 divisions, 3 square roots, 1 sines
+    inverse: 11 additions, 4 multiplications, 3 divisions, 1 square roots, 1 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
 
 With an X or Y offset it can only be combined with a flange that keeps its orientation.
 

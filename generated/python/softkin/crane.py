@@ -18,7 +18,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 6 additions, 6 multiplications, 1 divisions, 0 square roots, 4 sines
-    inverse: 20 additions, 13 multiplications, 6 divisions, 2 square roots, 6 sines
+    inverse: 13 additions, 6 multiplications, 5 divisions, 2 square roots, 2 sines
+    a branch at a singular pose, more: 7 additions, 7 multiplications, 1 divisions, 0 square roots, 4 sines
 
 On the vertical the azimuth is the reference's; at the origin the polar angle is too.
 

@@ -136,8 +136,8 @@ class Constants(NamedTuple):
     part_of_pivot_2_x: float
     cos_azimuth_3_times_inner_arm_3: float
     part_of_pivot_3_x: float
-    part_of_share_2: float
-    part_of_share_3: float
+    part_of_projection_2: float
+    part_of_projection_3: float
     inner_arm_1_times_shortest_link: float
     inner_arm_2_times_shortest_link: float
     inner_arm_3_times_shortest_link: float
@@ -478,38 +478,38 @@ class DeltaP3CType3(OffsetKinematics):
             raise self._refusal("arms long enough to reach the plate")
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
-        # a length of the machine
+        # characteristic length of the machine
         machine_scale = (
             base_radius_1 + base_radius_2 + base_radius_3 + inner_arm_1 + inner_arm_2 + inner_arm_3 + outer_arm_1
             + outer_arm_2 + outer_arm_3 + tcp_radius_1 + tcp_radius_2 + tcp_radius_3
@@ -520,7 +520,7 @@ class DeltaP3CType3(OffsetKinematics):
         cos_azimuth_1 = cos(DEGREE*azimuth_1)
         cos_azimuth_2 = cos(DEGREE*azimuth_2)
         cos_azimuth_3 = cos(DEGREE*azimuth_3)
-        # assembly mode of this machine
+        # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = (
             (1.0 if tcp_above else -1.0)
             if cos_azimuth_1*sin_azimuth_2 + cos_azimuth_2*sin_azimuth_3 + cos_azimuth_3*sin_azimuth_1 - cos_azimuth_1*sin_azimuth_3 - cos_azimuth_2*sin_azimuth_1 - cos_azimuth_3*sin_azimuth_2 > 0.0
@@ -548,8 +548,8 @@ class DeltaP3CType3(OffsetKinematics):
         cos_azimuth_3_times_inner_arm_3 = inner_arm_3*cos_azimuth_3
         part_of_pivot_3_x = base_radius_3*cos_azimuth_3 - cos_azimuth_3_times_tcp_radius_3
         outer_arm_1_squared_times_half = 0.5*outer_arm_1*outer_arm_1
-        part_of_share_2 = outer_arm_1_squared_times_half - 0.5*outer_arm_2*outer_arm_2
-        part_of_share_3 = outer_arm_1_squared_times_half - 0.5*outer_arm_3*outer_arm_3
+        part_of_projection_2 = outer_arm_1_squared_times_half - 0.5*outer_arm_2*outer_arm_2
+        part_of_projection_3 = outer_arm_1_squared_times_half - 0.5*outer_arm_3*outer_arm_3
         inner_arm_1_times_shortest_link = 1e-9*inner_arm_1
         inner_arm_2_times_shortest_link = 1e-9*inner_arm_2
         inner_arm_3_times_shortest_link = 1e-9*inner_arm_3
@@ -599,7 +599,7 @@ class DeltaP3CType3(OffsetKinematics):
             cos_azimuth_1_times_inner_arm_1=cos_azimuth_1_times_inner_arm_1, part_of_pivot_1_x=part_of_pivot_1_x,
             cos_azimuth_2_times_inner_arm_2=cos_azimuth_2_times_inner_arm_2, part_of_pivot_2_x=part_of_pivot_2_x,
             cos_azimuth_3_times_inner_arm_3=cos_azimuth_3_times_inner_arm_3, part_of_pivot_3_x=part_of_pivot_3_x,
-            part_of_share_2=part_of_share_2, part_of_share_3=part_of_share_3,
+            part_of_projection_2=part_of_projection_2, part_of_projection_3=part_of_projection_3,
             inner_arm_1_times_shortest_link=inner_arm_1_times_shortest_link,
             inner_arm_2_times_shortest_link=inner_arm_2_times_shortest_link,
             inner_arm_3_times_shortest_link=inner_arm_3_times_shortest_link,
@@ -650,79 +650,101 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_3_x = k.part_of_pivot_3_x
         part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
+        part_of_projection_2 = k.part_of_projection_2
+        part_of_projection_3 = k.part_of_projection_3
         sin_azimuth_1 = k.sin_azimuth_1
         sin_azimuth_2 = k.sin_azimuth_2
         sin_azimuth_3 = k.sin_azimuth_3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        pivot_1_z = -inner_arm_1*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
+        pivot_2_z = -inner_arm_2*sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
-        apart_3_y = pivot_3_y - pivot_1_y
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3
+        centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_3_z = -inner_arm_3*sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
-        # how far centre 3 draws the foot
-        share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = (
+            part_of_projection_2
+            + 0.5*(
+                centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y + centre_1_to_2_z*centre_1_to_2_z
+            )
+        )
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = (
+            part_of_projection_3
+            + 0.5*(
+                centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_y*centre_1_to_3_y + centre_1_to_3_z*centre_1_to_3_z
+            )
+        )
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
+            *(
+                (centre_1_to_3_y*normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - centre_1_to_2_y*normal_z)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
+                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + pivot_1_y + normal_y*rise
-        z = foot_z + pivot_1_z + normal_z*rise
-        span_1_x = x - part_of_pivot_1_x  # rod 1
-        span_1_y = y - part_of_pivot_1_y  # rod 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        y = foot_y + pivot_1_y + height_by_normal*normal_y
+        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_y = y - part_of_pivot_1_y
         branch_knee_1 = ((-span_1_x*cos_azimuth_1 - span_1_y*sin_azimuth_1)*sin_a1 - z*cos_a1)/outer_arm_1
-        span_2_x = x - part_of_pivot_2_x  # rod 2
-        span_2_y = y - part_of_pivot_2_y  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_pivot_2_y
         branch_knee_2 = ((-span_2_x*cos_azimuth_2 - span_2_y*sin_azimuth_2)*sin_a2 - z*cos_a2)/outer_arm_2
-        span_3_x = x - part_of_pivot_3_x  # rod 3
-        span_3_y = y - part_of_pivot_3_y  # rod 3
+        span_3_x = x - part_of_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - part_of_pivot_3_y
         branch_knee_3 = ((-span_3_x*cos_azimuth_3 - span_3_y*sin_azimuth_3)*sin_a3 - z*cos_a3)/outer_arm_3
         return (
             (x, y, z),
@@ -755,60 +777,81 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_3_x = k.part_of_pivot_3_x
         part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
-        # numbers of reasonable size
+        part_of_projection_2 = k.part_of_projection_2
+        part_of_projection_3 = k.part_of_projection_3
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        pivot_1_z = -inner_arm_1*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
+        pivot_2_z = -inner_arm_2*sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
-        apart_3_y = pivot_3_y - pivot_1_y
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3
+        centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_3_z = -inner_arm_3*sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
-        # how far centre 3 draws the foot
-        share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = (
+            part_of_projection_2
+            + 0.5*(
+                centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y + centre_1_to_2_z*centre_1_to_2_z
+            )
+        )
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = (
+            part_of_projection_3
+            + 0.5*(
+                centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_y*centre_1_to_3_y + centre_1_to_3_z*centre_1_to_3_z
+            )
+        )
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
+            *(
+                (centre_1_to_3_y*normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - centre_1_to_2_y*normal_z)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
+                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
@@ -863,32 +906,33 @@ class DeltaP3CType3(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = x - part_of_pivot_1_x  # rod 1
-        span_1_y = y - part_of_pivot_1_y  # rod 1
+        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        span_1_y = y - part_of_pivot_1_y
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         z_squared = z*z
-        effective_a1 = root(z_squared + along_a1*along_a1)  # effective length that the angle turns
+        effective_a1 = root(z_squared + along_a1*along_a1)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
-        # square of the third side
+        # square of the third side of the triangle
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
         one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
@@ -903,25 +947,26 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = x - part_of_pivot_2_x  # rod 2
-        span_2_y = y - part_of_pivot_2_y  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_pivot_2_y
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = root(z_squared + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = root(z_squared + along_a2*along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
-        # square of the third side
+        # square of the third side of the triangle
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
         one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
@@ -935,25 +980,26 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_x = x - part_of_pivot_3_x  # rod 3
-        span_3_y = y - part_of_pivot_3_y  # rod 3
+        span_3_x = x - part_of_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - part_of_pivot_3_y
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = root(z_squared + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = root(z_squared + along_a3*along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
-        # square of the third side
+        # square of the third side of the triangle
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
-        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        # law of cosines for a3: rod 3: 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
         one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
@@ -967,29 +1013,32 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = (along_a1*cos_swing_a1 + z*sin_swing_a1)/effective_a1
         rod_1_x = span_1_x - cos_a1*cos_azimuth_1_times_inner_arm_1
         rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1
         sin_a1 = (along_a1*sin_swing_a1 - z*cos_swing_a1)/effective_a1
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        pivot_1_z = -inner_arm_1*sin_a1
         rod_1_z = z - pivot_1_z
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (along_a2*cos_swing_a2 + z*sin_swing_a2)/effective_a2
         rod_2_x = span_2_x - cos_a2*cos_azimuth_2_times_inner_arm_2
         rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - z*cos_swing_a2)/effective_a2
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        pivot_2_z = -inner_arm_2*sin_a2
         rod_2_z = z - pivot_2_z
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = (along_a3*cos_swing_a3 + z*sin_swing_a3)/effective_a3
         rod_3_x = span_3_x - cos_a3*cos_azimuth_3_times_inner_arm_3
         rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3
         sin_a3 = (along_a3*sin_swing_a3 - z*cos_swing_a3)/effective_a3
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        pivot_3_z = -inner_arm_3*sin_a3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
             -part_of_type2_rods_coplanar
@@ -1004,19 +1053,19 @@ class DeltaP3CType3(OffsetKinematics):
             return Diagnosis(
                 Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
             )
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -1099,79 +1148,101 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_3_x = k.part_of_pivot_3_x
         part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
+        part_of_projection_2 = k.part_of_projection_2
+        part_of_projection_3 = k.part_of_projection_3
         sin_azimuth_1 = k.sin_azimuth_1
         sin_azimuth_2 = k.sin_azimuth_2
         sin_azimuth_3 = k.sin_azimuth_3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        pivot_1_z = -inner_arm_1*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
+        pivot_2_z = -inner_arm_2*sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
-        apart_3_y = pivot_3_y - pivot_1_y
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3
+        centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_3_z = -inner_arm_3*sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
-        # how far centre 3 draws the foot
-        share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = (
+            part_of_projection_2
+            + 0.5*(
+                centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y + centre_1_to_2_z*centre_1_to_2_z
+            )
+        )
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = (
+            part_of_projection_3
+            + 0.5*(
+                centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_y*centre_1_to_3_y + centre_1_to_3_z*centre_1_to_3_z
+            )
+        )
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
+            *(
+                (centre_1_to_3_y*normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - centre_1_to_2_y*normal_z)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
+                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        z = foot_z + pivot_1_z + normal_z*rise
-        x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = x - part_of_pivot_1_x  # rod 1
-        y = foot_y + pivot_1_y + normal_y*rise
-        span_1_y = y - part_of_pivot_1_y  # rod 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
+        y = foot_y + pivot_1_y + height_by_normal*normal_y
+        span_1_y = y - part_of_pivot_1_y
         margin_stretched_1 = ((-span_1_x*cos_azimuth_1 - span_1_y*sin_azimuth_1)*sin_a1 - z*cos_a1)/outer_arm_1
-        span_2_x = x - part_of_pivot_2_x  # rod 2
-        span_2_y = y - part_of_pivot_2_y  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_pivot_2_y
         margin_stretched_2 = ((-span_2_x*cos_azimuth_2 - span_2_y*sin_azimuth_2)*sin_a2 - z*cos_a2)/outer_arm_2
-        span_3_x = x - part_of_pivot_3_x  # rod 3
-        span_3_y = y - part_of_pivot_3_y  # rod 3
+        span_3_x = x - part_of_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - part_of_pivot_3_y
         margin_stretched_3 = ((-span_3_x*cos_azimuth_3 - span_3_y*sin_azimuth_3)*sin_a3 - z*cos_a3)/outer_arm_3
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
@@ -1233,8 +1304,8 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_3_x = k.part_of_pivot_3_x
         part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
+        part_of_projection_2 = k.part_of_projection_2
+        part_of_projection_3 = k.part_of_projection_3
         sin_azimuth_1 = k.sin_azimuth_1
         sin_azimuth_1_times_tcp_radius_1 = k.sin_azimuth_1_times_tcp_radius_1
         sin_azimuth_2 = k.sin_azimuth_2
@@ -1253,69 +1324,91 @@ class DeltaP3CType3(OffsetKinematics):
         twice_sin_azimuth_1 = k.twice_sin_azimuth_1
         twice_sin_azimuth_2 = k.twice_sin_azimuth_2
         twice_sin_azimuth_3 = k.twice_sin_azimuth_3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        pivot_1_z = -inner_arm_1*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
+        pivot_2_z = -inner_arm_2*sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
-        apart_3_y = pivot_3_y - pivot_1_y
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3
+        centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_3_z = -inner_arm_3*sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
-        # how far centre 3 draws the foot
-        share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = (
+            part_of_projection_2
+            + 0.5*(
+                centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y + centre_1_to_2_z*centre_1_to_2_z
+            )
+        )
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = (
+            part_of_projection_3
+            + 0.5*(
+                centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_y*centre_1_to_3_y + centre_1_to_3_z*centre_1_to_3_z
+            )
+        )
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
+            *(
+                (centre_1_to_3_y*normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - centre_1_to_2_y*normal_z)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
+                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
         part_of_slope_1_by_y = base_radius_1 + inner_arm_1*cos_a1
         slope_1_by_x = 2.0*(cos_azimuth_1_times_tcp_radius_1 + x) - part_of_slope_1_by_y*twice_cos_azimuth_1
-        y = foot_y + pivot_1_y + normal_y*rise
+        y = foot_y + pivot_1_y + height_by_normal*normal_y
         slope_1_by_y = 2.0*(sin_azimuth_1_times_tcp_radius_1 + y) - part_of_slope_1_by_y*twice_sin_azimuth_1
-        z = foot_z + pivot_1_z + normal_z*rise
+        z = foot_z + pivot_1_z + height_by_normal*normal_z
         twice_z = 2.0*z
         slope_1_by_z = twice_z + twice_inner_arm_1*sin_a1
         part_of_slope_2_by_x = base_radius_2 + inner_arm_2*cos_a2
@@ -1329,7 +1422,7 @@ class DeltaP3CType3(OffsetKinematics):
         slope_3_by_x = 2.0*(cos_azimuth_3_times_tcp_radius_3 + x) - part_of_slope_3_by_y*twice_cos_azimuth_3
         part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
         part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
-        # of the closure by the position: zero in a type 2 singularity
+        # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
             part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
         )
@@ -1435,36 +1528,37 @@ class DeltaP3CType3(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
             and -1e9 <= ref_a3 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        flange_x = x - point_x  # the flange behind the point
-        span_1_x = flange_x - part_of_pivot_1_x  # rod 1
-        flange_y = y - point_y  # the flange behind the point
-        span_1_y = flange_y - part_of_pivot_1_y  # rod 1
+        flange_x = x - point_x  # position of the flange: the point less its offset
+        span_1_x = flange_x - part_of_pivot_1_x  # rod 1: known part of its vector
+        flange_y = y - point_y  # position of the flange: the point less its offset
+        span_1_y = flange_y - part_of_pivot_1_y
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
-        flange_z = z - point_z  # the flange behind the point
+        flange_z = z - point_z  # position of the flange: the point less its offset
         flange_z_squared = flange_z*flange_z
-        effective_a1 = root(flange_z_squared + along_a1*along_a1)  # effective length that the angle turns
+        effective_a1 = root(flange_z_squared + along_a1*along_a1)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
-        # square of the third side
+        # square of the third side of the triangle
         third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
         one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
@@ -1479,25 +1573,26 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
-        span_2_y = flange_y - part_of_pivot_2_y  # rod 2
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = flange_y - part_of_pivot_2_y
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = root(flange_z_squared + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = root(flange_z_squared + along_a2*along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
-        # square of the third side
+        # square of the third side of the triangle
         third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
         one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
@@ -1511,25 +1606,26 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_x = flange_x - part_of_pivot_3_x  # rod 3
-        span_3_y = flange_y - part_of_pivot_3_y  # rod 3
+        span_3_x = flange_x - part_of_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = flange_y - part_of_pivot_3_y
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = root(flange_z_squared + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = root(flange_z_squared + along_a3*along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
-        # square of the third side
+        # square of the third side of the triangle
         third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
-        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        # law of cosines for a3: rod 3: 1 - cosine, times a scale
         one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
         one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
@@ -1543,29 +1639,32 @@ class DeltaP3CType3(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = (along_a1*cos_swing_a1 + flange_z*sin_swing_a1)/effective_a1
         rod_1_x = span_1_x - cos_a1*cos_azimuth_1_times_inner_arm_1
         rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1
         sin_a1 = (along_a1*sin_swing_a1 - flange_z*cos_swing_a1)/effective_a1
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        pivot_1_z = -inner_arm_1*sin_a1
         rod_1_z = flange_z - pivot_1_z
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (along_a2*cos_swing_a2 + flange_z*sin_swing_a2)/effective_a2
         rod_2_x = span_2_x - cos_a2*cos_azimuth_2_times_inner_arm_2
         rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - flange_z*cos_swing_a2)/effective_a2
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        pivot_2_z = -inner_arm_2*sin_a2
         rod_2_z = flange_z - pivot_2_z
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = (along_a3*cos_swing_a3 + flange_z*sin_swing_a3)/effective_a3
         rod_3_x = span_3_x - cos_a3*cos_azimuth_3_times_inner_arm_3
         rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3
         sin_a3 = (along_a3*sin_swing_a3 - flange_z*cos_swing_a3)/effective_a3
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        pivot_3_z = -inner_arm_3*sin_a3
         rod_3_z = flange_z - pivot_3_z
         type2_rods_coplanar = (
             -part_of_type2_rods_coplanar
@@ -1580,19 +1679,19 @@ class DeltaP3CType3(OffsetKinematics):
             return Diagnosis(
                 Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
             )
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -1629,79 +1728,101 @@ class DeltaP3CType3(OffsetKinematics):
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_3_x = k.part_of_pivot_3_x
         part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
+        part_of_projection_2 = k.part_of_projection_2
+        part_of_projection_3 = k.part_of_projection_3
         sin_azimuth_1 = k.sin_azimuth_1
         sin_azimuth_2 = k.sin_azimuth_2
         sin_azimuth_3 = k.sin_azimuth_3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
-        apart_2_y = pivot_2_y - pivot_1_y
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        pivot_1_z = -inner_arm_1*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
+        pivot_2_z = -inner_arm_2*sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
-        apart_3_y = pivot_3_y - pivot_1_y
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3
+        centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_3_z = -inner_arm_3*sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
+        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
-        # how far centre 3 draws the foot
-        share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = (
+            part_of_projection_2
+            + 0.5*(
+                centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y + centre_1_to_2_z*centre_1_to_2_z
+            )
+        )
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = (
+            part_of_projection_3
+            + 0.5*(
+                centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_y*centre_1_to_3_y + centre_1_to_3_z*centre_1_to_3_z
+            )
+        )
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
+            *(
+                (centre_1_to_3_y*normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - centre_1_to_2_y*normal_z)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
+                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        flange_z = foot_z + pivot_1_z + normal_z*rise
-        flange_x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = flange_x - part_of_pivot_1_x  # rod 1
-        flange_y = foot_y + pivot_1_y + normal_y*rise
-        span_1_y = flange_y - part_of_pivot_1_y  # rod 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        flange_z = foot_z + pivot_1_z + height_by_normal*normal_z
+        flange_x = foot_x + pivot_1_x + height_by_normal*normal_x
+        span_1_x = flange_x - part_of_pivot_1_x  # rod 1: known part of its vector
+        flange_y = foot_y + pivot_1_y + height_by_normal*normal_y
+        span_1_y = flange_y - part_of_pivot_1_y
         branch_knee_1 = ((-span_1_x*cos_azimuth_1 - span_1_y*sin_azimuth_1)*sin_a1 - flange_z*cos_a1)/outer_arm_1
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
-        span_2_y = flange_y - part_of_pivot_2_y  # rod 2
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = flange_y - part_of_pivot_2_y
         branch_knee_2 = ((-span_2_x*cos_azimuth_2 - span_2_y*sin_azimuth_2)*sin_a2 - flange_z*cos_a2)/outer_arm_2
-        span_3_x = flange_x - part_of_pivot_3_x  # rod 3
-        span_3_y = flange_y - part_of_pivot_3_y  # rod 3
+        span_3_x = flange_x - part_of_pivot_3_x  # rod 3: known part of its vector
+        span_3_y = flange_y - part_of_pivot_3_y
         branch_knee_3 = ((-span_3_x*cos_azimuth_3 - span_3_y*sin_azimuth_3)*sin_a3 - flange_z*cos_a3)/outer_arm_3
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 

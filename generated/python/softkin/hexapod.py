@@ -20,7 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 4280 additions, 5562 multiplications, 600 divisions, 140 square roots, 120 sines
-    inverse: 256 additions, 348 multiplications, 30 divisions, 10 square roots, 2 sines
+    inverse: 224 additions, 303 multiplications, 21 divisions, 8 square roots, 2 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
     Newton's method: every pass improves the pose until all legs have their lengths: at most 20 passes, all of which are counted
 
 Six lengths allow up to 40 poses. Forward kinematics finds the one in the assembly mode of the home pose, by

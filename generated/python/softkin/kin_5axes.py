@@ -21,8 +21,10 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 14 additions, 10 multiplications, 2 divisions, 0 square roots, 4 sines
-    inverse: 61 additions, 60 multiplications, 17 divisions, 3 square roots, 4 sines
-    inverse, all 2 branches open: 89 additions, 75 multiplications, 25 divisions, 4 square roots, 8 sines
+    inverse: 28 additions, 14 multiplications, 8 divisions, 1 square roots, 2 sines
+    inverse, all 2 branches open: 55 additions, 28 multiplications, 16 divisions, 2 square roots, 4 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,

@@ -92,7 +92,7 @@ class Constants(NamedTuple):
     link_length_2_squared_times_rounding: float
     link_length_2_plus_radius_2: float
     link_length_2_minus_radius_2: float
-    part_of_along_centres: float
+    part_of_foot_fraction: float
     link_length_2_by_link_length_3: float
     link_length_3_by_link_length_2: float
     link_length_2_times_link_length_4: float
@@ -305,36 +305,36 @@ class KinType12XY(OffsetKinematics):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
-        # a length of the machine
+        # characteristic length of the machine
         machine_scale = link_length_1 + link_length_2 + link_length_3 + link_length_4 + link_length_5
         radius_2 = link_length_2*link_length_4/link_length_3
-        # assembly mode of this machine
+        # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = (-1.0 if e_right else 1.0) if not swap_xy else (1.0 if e_right else -1.0)
         part_of_normal_divisor = 1e-22*link_length_2*link_length_2
         link_length_2_squared_times_rounding = 1e-12*link_length_2*link_length_2
         link_length_2_plus_radius_2 = link_length_2 + radius_2
         link_length_2_minus_radius_2 = link_length_2 - radius_2
-        part_of_along_centres = link_length_2_minus_radius_2*link_length_2_plus_radius_2
+        part_of_foot_fraction = link_length_2_minus_radius_2*link_length_2_plus_radius_2
         link_length_2_by_link_length_3 = link_length_2/link_length_3
         link_length_3_by_link_length_2 = link_length_3/link_length_2
         link_length_2_times_link_length_4 = link_length_2*link_length_4
@@ -371,7 +371,7 @@ class KinType12XY(OffsetKinematics):
             part_of_normal_divisor=part_of_normal_divisor,
             link_length_2_squared_times_rounding=link_length_2_squared_times_rounding,
             link_length_2_plus_radius_2=link_length_2_plus_radius_2,
-            link_length_2_minus_radius_2=link_length_2_minus_radius_2, part_of_along_centres=part_of_along_centres,
+            link_length_2_minus_radius_2=link_length_2_minus_radius_2, part_of_foot_fraction=part_of_foot_fraction,
             link_length_2_by_link_length_3=link_length_2_by_link_length_3,
             link_length_3_by_link_length_2=link_length_3_by_link_length_2,
             link_length_2_times_link_length_4=link_length_2_times_link_length_4, part_of_branch_w=part_of_branch_w,
@@ -406,25 +406,26 @@ class KinType12XY(OffsetKinematics):
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
         part_of_branch_w = k.part_of_branch_w
+        part_of_foot_fraction = k.part_of_foot_fraction
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
         part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         swap_xy = k.swap_xy
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        pivot_upper_y = -link_length_1*cos_a1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
+        # rod rear: centre about which it swings
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -435,40 +436,40 @@ class KinType12XY(OffsetKinematics):
             centre_2_x = -scaled_pivot_rear_x
             centre_1_y = pivot_upper_y
             centre_2_y = -scaled_pivot_rear_y
-        apart_2_x = centre_2_x - centre_1_x
-        apart_2_y = centre_2_y - centre_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
-            return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
-        # the square of the height over the centres
+        centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_1_to_2_y = centre_2_y - centre_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)  # distance between the centres
+        one_by_normal_square = 1.0/normal_divisor
+        # square of the height over the line of the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
             *one_by_normal_square
         )
-        # the rods do not meet
-        if not (height_square >= -link_length_2_squared_times_rounding):
-            return Status.IMPOSSIBLE
-        # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = centre_1_x + foot_x - apart_2_y*rise
-        foot_y = along_centres*apart_2_y
-        y = centre_1_y + foot_y + apart_2_x*rise
-        # rod upper
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5*(normal_divisor + part_of_foot_fraction)*one_by_normal_square
+        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal
+        foot_y = centre_1_to_2_y*foot_fraction
+        y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal
+        # rod upper: known part of its vector
         if swap_xy:
             span_upper_x = y
             span_upper_y = x
         else:
             span_upper_x = x
             span_upper_y = y
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+            return Status.IMPOSSIBLE
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
         branch_w = (
             (
                 (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)*cos_a2
@@ -492,19 +493,20 @@ class KinType12XY(OffsetKinematics):
         part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
         part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         swap_xy = k.swap_xy
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        pivot_upper_y = -link_length_1*cos_a1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
+        # rod rear: centre about which it swings
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -515,14 +517,15 @@ class KinType12XY(OffsetKinematics):
             centre_2_x = -scaled_pivot_rear_x
             centre_1_y = pivot_upper_y
             centre_2_y = -scaled_pivot_rear_y
-        apart_2_x = centre_2_x - centre_1_x
-        apart_2_y = centre_2_y - centre_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_1_to_2_y = centre_2_y - centre_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        # the square of the height over the centres
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
@@ -563,7 +566,7 @@ class KinType12XY(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         swap_xy = k.swap_xy
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
@@ -573,80 +576,61 @@ class KinType12XY(OffsetKinematics):
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        # rod upper
+        # rod upper: known part of its vector
         if swap_xy:
             span_upper_x = y
             span_upper_y = x
         else:
             span_upper_x = x
             span_upper_y = y
-        # effective length that the angle turns
+        # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
-        # a1: its effective length is too short
-        if not (effective_a1 > link_length_1_times_shortest_link):
-            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
+        # law of cosines for a1: rod upper: 1 - cosine, times a scale
         one_less_cos_a1 = (
-            (effective_a1 + link_length_1_minus_link_length_2)*(effective_a1 + link_length_1_plus_link_length_2)
+            (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (
-            (link_length_1_plus_link_length_2 - effective_a1)*(effective_a1 - link_length_1_minus_link_length_2)
+            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
         )
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        # a1: out of reach
-        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
-            missing = (
-                0.5*abs(effective_a1 - link_length_1_minus_link_length_2)
-                + 0.5*abs(effective_a1 + link_length_1_minus_link_length_2)
-                + 0.5*abs(effective_a1 - link_length_1_plus_link_length_2)
-                + 0.5*abs(effective_a1 + link_length_1_plus_link_length_2) - effective_a1
-                - link_length_1_plus_link_length_2
-            )
-            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
-        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/divisor_of_cos_a1
+        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
+        # addition theorem: plus the angle of the direction from which it is measured
+        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
+        pivot_upper_y = -link_length_1*cos_a1
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
         along_a2 = span_rear_x - part_of_along_a2*sin_a1
-        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
         across_a2 = part_of_along_a2*cos_a1 - span_rear_y
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # a2: its effective length is too short
-        if not (effective_a2 > link_length_5_times_shortest_link):
-            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        # law of cosines for a2: rod rear: 1 - cosine, times a scale
         one_less_cos_a2 = (
-            (effective_a2 + link_length_4_plus_link_length_5)*(effective_a2 + link_length_5_minus_link_length_4)
+            (divisor_a2 + link_length_4_plus_link_length_5)*(divisor_a2 + link_length_5_minus_link_length_4)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (
-            (link_length_4_plus_link_length_5 - effective_a2)*(effective_a2 - link_length_5_minus_link_length_4)
+            (link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4)
         )
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        # a2: out of reach
-        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5*abs(effective_a2 - link_length_4_plus_link_length_5)
-                + 0.5*abs(effective_a2 + link_length_4_plus_link_length_5)
-                + 0.5*abs(effective_a2 - link_length_5_minus_link_length_4)
-                + 0.5*abs(effective_a2 + link_length_5_minus_link_length_4) - effective_a2
-                - link_length_4_plus_link_length_5
-            )
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
-        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
-        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/effective_a2
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
+        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
+        # rod rear: centre about which it swings
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
+        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
@@ -657,6 +641,34 @@ class KinType12XY(OffsetKinematics):
             centre_1_y = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_x
             centre_2_y = -scaled_pivot_rear_y
+        # a1: its effective length is too short
+        if not (effective_a1 > link_length_1_times_shortest_link):
+            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
+            missing = (
+                0.5*(
+                    abs(divisor_a1 - link_length_1_minus_link_length_2)
+                    + abs(divisor_a1 + link_length_1_minus_link_length_2)
+                    + abs(divisor_a1 - link_length_1_plus_link_length_2)
+                    + abs(divisor_a1 + link_length_1_plus_link_length_2)
+                )
+                - divisor_a1 - link_length_1_plus_link_length_2
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
+        # a2: its effective length is too short
+        if not (effective_a2 > link_length_5_times_shortest_link):
+            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
+            missing = (
+                0.5*(
+                    abs(divisor_a2 - link_length_4_plus_link_length_5)
+                    + abs(divisor_a2 + link_length_4_plus_link_length_5)
+                    + abs(divisor_a2 - link_length_5_minus_link_length_4)
+                    + abs(divisor_a2 + link_length_5_minus_link_length_4)
+                )
+                - divisor_a2 - link_length_4_plus_link_length_5
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
         rod_2_x = x - centre_2_x
@@ -668,14 +680,14 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(
                 Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
             )
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -726,26 +738,27 @@ class KinType12XY(OffsetKinematics):
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
         part_of_branch_w = k.part_of_branch_w
+        part_of_foot_fraction = k.part_of_foot_fraction
         part_of_margin_arms_aligned = k.part_of_margin_arms_aligned
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
         part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         swap_xy = k.swap_xy
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        pivot_upper_y = -link_length_1*cos_a1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
+        # rod rear: centre about which it swings
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -756,40 +769,40 @@ class KinType12XY(OffsetKinematics):
             centre_2_x = -scaled_pivot_rear_x
             centre_1_y = pivot_upper_y
             centre_2_y = -scaled_pivot_rear_y
-        apart_2_x = centre_2_x - centre_1_x
-        apart_2_y = centre_2_y - centre_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
-            return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
-        # the square of the height over the centres
+        centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_1_to_2_y = centre_2_y - centre_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)  # distance between the centres
+        one_by_normal_square = 1.0/normal_divisor
+        # square of the height over the line of the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
             *one_by_normal_square
         )
-        # the rods do not meet
-        if not (height_square >= -link_length_2_squared_times_rounding):
-            return Status.IMPOSSIBLE
-        # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = centre_1_x + foot_x - apart_2_y*rise
-        foot_y = along_centres*apart_2_y
-        y = centre_1_y + foot_y + apart_2_x*rise
-        # rod upper
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5*(normal_divisor + part_of_foot_fraction)*one_by_normal_square
+        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal
+        foot_y = centre_1_to_2_y*foot_fraction
+        y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal
+        # rod upper: known part of its vector
         if swap_xy:
             span_upper_x = y
             span_upper_y = x
         else:
             span_upper_x = x
             span_upper_y = y
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+            return Status.IMPOSSIBLE
         margin_stretched_1 = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
         margin_stretched_2 = (
             (
                 (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)*cos_a2
@@ -820,7 +833,7 @@ class KinType12XY(OffsetKinematics):
         machine_scale_squared_times_free_angle = k.machine_scale_squared_times_free_angle
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
+        part_of_foot_fraction = k.part_of_foot_fraction
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_pivot_rear_x = k.part_of_pivot_rear_x
         part_of_slope_2_by_a1 = k.part_of_slope_2_by_a1
@@ -828,14 +841,14 @@ class KinType12XY(OffsetKinematics):
         swap_xy = k.swap_xy
         twice_link_length_1 = k.twice_link_length_1
         twice_link_length_5 = k.twice_link_length_5
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        pivot_upper_y = -link_length_1*cos_a1
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
@@ -845,73 +858,72 @@ class KinType12XY(OffsetKinematics):
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         cos_a2_times_link_length_5 = link_length_5*cos_a2
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - cos_a2_times_link_length_5  # rod rear
+        # rod rear: centre about which it swings
+        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - cos_a2_times_link_length_5
         sin_a2 = sin(a2)
         link_length_5_times_sin_a2 = link_length_5*sin_a2
-        pivot_rear_y = link_length_5_times_sin_a2 + part_of_pivot_rear_x*cos_a1  # rod rear
+        pivot_rear_y = link_length_5_times_sin_a2 + part_of_pivot_rear_x*cos_a1
         centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
-        apart_2_x = centre_2_x - centre_1_x
+        centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
         centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
-        apart_2_y = centre_2_y - centre_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
-            return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
-        # the square of the height over the centres
+        centre_1_to_2_y = centre_2_y - centre_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)  # distance between the centres
+        one_by_normal_square = 1.0/normal_divisor
+        # square of the height over the line of the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
             *one_by_normal_square
         )
-        # the rods do not meet
-        if not (height_square >= -link_length_2_squared_times_rounding):
-            return Status.IMPOSSIBLE
         twice_link_length_1_times_sin_a1 = twice_link_length_1*sin_a1
         twice_link_length_1_times_cos_a1 = twice_link_length_1*cos_a1
-        # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = centre_1_x + foot_x - apart_2_y*rise
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5*(normal_divisor + part_of_foot_fraction)*one_by_normal_square
+        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal
         twice_x = 2.0*x
-        foot_y = along_centres*apart_2_y
-        y = centre_1_y + foot_y + apart_2_x*rise
+        foot_y = centre_1_to_2_y*foot_fraction
+        y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal
         twice_y = 2.0*y
-        if swap_xy:
-            slope_1_by_x = twice_link_length_1_times_cos_a1 + twice_x
-            slope_1_by_y = twice_link_length_1_times_sin_a1 + twice_y
-        else:
-            slope_1_by_x = twice_link_length_1_times_sin_a1 + twice_x
-            slope_1_by_y = twice_link_length_1_times_cos_a1 + twice_y
         link_length_3_by_link_length_2_times_x = link_length_3_by_link_length_2*x
         part_of_slope_2_by_y = cos_a2_times_link_length_5 - part_of_slope_2_by_x*sin_a1
         part_of_slope_2_by_x_2 = part_of_slope_2_by_y - link_length_3_by_link_length_2_times_x
         part_of_slope_2_by_y_2 = link_length_5_times_sin_a2 + part_of_slope_2_by_x*cos_a1
         part_of_slope_2_by_x_3 = link_length_3_by_link_length_2_times_x + part_of_slope_2_by_y_2
-        slope_2_by_x = (
-            -(-part_of_slope_2_by_x_3 if swap_xy else part_of_slope_2_by_x_2)*link_length_3_times_2_by_link_length_2
-        )
         link_length_3_by_link_length_2_times_y = link_length_3_by_link_length_2*y
         part_of_slope_2_by_y_3 = link_length_3_by_link_length_2_times_y + part_of_slope_2_by_y_2
         part_of_slope_2_by_y_4 = part_of_slope_2_by_y - link_length_3_by_link_length_2_times_y
-        slope_2_by_y = (
-            -(part_of_slope_2_by_y_4 if swap_xy else -part_of_slope_2_by_y_3)*link_length_3_times_2_by_link_length_2
-        )
-        # of the closure by the position: zero in a type 2 singularity
-        determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x
-        # nothing controls the plate
-        if not (abs(determinant) > machine_scale_squared_times_free_angle):
-            return Status.IMPOSSIBLE
         if swap_xy:
+            slope_1_by_x = twice_link_length_1_times_cos_a1 + twice_x
+            slope_1_by_y = twice_link_length_1_times_sin_a1 + twice_y
             slope_1_by_a1 = twice_link_length_1*((y - pivot_upper_x)*cos_a1 + (pivot_upper_y - x)*sin_a1)
             slope_2_by_a1 = (-part_of_slope_2_by_y_4*cos_a1 - part_of_slope_2_by_x_3*sin_a1)*part_of_slope_2_by_a1
             slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_x_3*cos_a2 - part_of_slope_2_by_y_4*sin_a2)
         else:
+            slope_1_by_x = twice_link_length_1_times_sin_a1 + twice_x
+            slope_1_by_y = twice_link_length_1_times_cos_a1 + twice_y
             slope_1_by_a1 = twice_link_length_1*((x - pivot_upper_x)*cos_a1 + (pivot_upper_y - y)*sin_a1)
             slope_2_by_a1 = (-part_of_slope_2_by_x_2*cos_a1 - part_of_slope_2_by_y_3*sin_a1)*part_of_slope_2_by_a1
             slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_y_3*cos_a2 - part_of_slope_2_by_x_2*sin_a2)
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+            return Status.IMPOSSIBLE
+        slope_2_by_x = (
+            -(-part_of_slope_2_by_x_3 if swap_xy else part_of_slope_2_by_x_2)*link_length_3_times_2_by_link_length_2
+        )
+        slope_2_by_y = (
+            -(part_of_slope_2_by_y_4 if swap_xy else -part_of_slope_2_by_y_3)*link_length_3_times_2_by_link_length_2
+        )
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x
+        # nothing controls the plate
+        if not (abs(determinant) > machine_scale_squared_times_free_angle):
+            return Status.IMPOSSIBLE
         one_by_determinant = 1.0/determinant
         slope_2_by_a2_times_one_by_determinant = one_by_determinant*slope_2_by_a2
         return (
@@ -960,7 +972,7 @@ class KinType12XY(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         swap_xy = k.swap_xy
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
@@ -970,82 +982,63 @@ class KinType12XY(OffsetKinematics):
         if not (abs(point_z - z) <= machine_scale_times_plane):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        flange_x = x - point_x  # the flange behind the point
-        flange_y = y - point_y  # the flange behind the point
-        # rod upper
+        flange_x = x - point_x  # position of the flange: the point less its offset
+        flange_y = y - point_y  # position of the flange: the point less its offset
+        # rod upper: known part of its vector
         if swap_xy:
             span_upper_x = flange_y
             span_upper_y = flange_x
         else:
             span_upper_x = flange_x
             span_upper_y = flange_y
-        # effective length that the angle turns
+        # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
-        # a1: its effective length is too short
-        if not (effective_a1 > link_length_1_times_shortest_link):
-            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
+        # law of cosines for a1: rod upper: 1 - cosine, times a scale
         one_less_cos_a1 = (
-            (effective_a1 + link_length_1_minus_link_length_2)*(effective_a1 + link_length_1_plus_link_length_2)
+            (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (
-            (link_length_1_plus_link_length_2 - effective_a1)*(effective_a1 - link_length_1_minus_link_length_2)
+            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
         )
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        # a1: out of reach
-        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
-            missing = (
-                0.5*abs(effective_a1 - link_length_1_minus_link_length_2)
-                + 0.5*abs(effective_a1 + link_length_1_minus_link_length_2)
-                + 0.5*abs(effective_a1 - link_length_1_plus_link_length_2)
-                + 0.5*abs(effective_a1 + link_length_1_plus_link_length_2) - effective_a1
-                - link_length_1_plus_link_length_2
-            )
-            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
-        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/divisor_of_cos_a1
+        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
+        # addition theorem: plus the angle of the direction from which it is measured
+        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
+        pivot_upper_y = -link_length_1*cos_a1
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
         along_a2 = span_rear_x - part_of_along_a2*sin_a1
-        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
         across_a2 = part_of_along_a2*cos_a1 - span_rear_y
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # a2: its effective length is too short
-        if not (effective_a2 > link_length_5_times_shortest_link):
-            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        # law of cosines for a2: rod rear: 1 - cosine, times a scale
         one_less_cos_a2 = (
-            (effective_a2 + link_length_4_plus_link_length_5)*(effective_a2 + link_length_5_minus_link_length_4)
+            (divisor_a2 + link_length_4_plus_link_length_5)*(divisor_a2 + link_length_5_minus_link_length_4)
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (
-            (link_length_4_plus_link_length_5 - effective_a2)*(effective_a2 - link_length_5_minus_link_length_4)
+            (link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4)
         )
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        # a2: out of reach
-        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5*abs(effective_a2 - link_length_4_plus_link_length_5)
-                + 0.5*abs(effective_a2 + link_length_4_plus_link_length_5)
-                + 0.5*abs(effective_a2 - link_length_5_minus_link_length_4)
-                + 0.5*abs(effective_a2 + link_length_5_minus_link_length_4) - effective_a2
-                - link_length_4_plus_link_length_5
-            )
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
-        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
-        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/effective_a2
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
+        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
+        # rod rear: centre about which it swings
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
+        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
@@ -1056,6 +1049,34 @@ class KinType12XY(OffsetKinematics):
             centre_1_y = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_x
             centre_2_y = -scaled_pivot_rear_y
+        # a1: its effective length is too short
+        if not (effective_a1 > link_length_1_times_shortest_link):
+            return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
+        if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
+            missing = (
+                0.5*(
+                    abs(divisor_a1 - link_length_1_minus_link_length_2)
+                    + abs(divisor_a1 + link_length_1_minus_link_length_2)
+                    + abs(divisor_a1 - link_length_1_plus_link_length_2)
+                    + abs(divisor_a1 + link_length_1_plus_link_length_2)
+                )
+                - divisor_a1 - link_length_1_plus_link_length_2
+            )
+            return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
+        # a2: its effective length is too short
+        if not (effective_a2 > link_length_5_times_shortest_link):
+            return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
+        if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
+            missing = (
+                0.5*(
+                    abs(divisor_a2 - link_length_4_plus_link_length_5)
+                    + abs(divisor_a2 + link_length_4_plus_link_length_5)
+                    + abs(divisor_a2 - link_length_5_minus_link_length_4)
+                    + abs(divisor_a2 + link_length_5_minus_link_length_4)
+                )
+                - divisor_a2 - link_length_4_plus_link_length_5
+            )
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         rod_1_x = flange_x - centre_1_x
         rod_1_y = flange_y - centre_1_y
         rod_2_x = flange_x - centre_2_x
@@ -1067,14 +1088,14 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(
                 Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
             )
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -1093,25 +1114,26 @@ class KinType12XY(OffsetKinematics):
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
         part_of_branch_w = k.part_of_branch_w
+        part_of_foot_fraction = k.part_of_foot_fraction
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
         part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
         swap_xy = k.swap_xy
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        pivot_upper_y = -link_length_1*cos_a1
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2  # rod rear
+        # rod rear: centre about which it swings
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2  # rod rear
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -1122,40 +1144,40 @@ class KinType12XY(OffsetKinematics):
             centre_2_x = -scaled_pivot_rear_x
             centre_1_y = pivot_upper_y
             centre_2_y = -scaled_pivot_rear_y
-        apart_2_x = centre_2_x - centre_1_x
-        apart_2_y = centre_2_y - centre_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
-        # the centres coincide or lie on a line: nothing holds the plate
-        if not (normal_square > part_of_normal_divisor):
-            return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
-        # the square of the height over the centres
+        centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_1_to_2_y = centre_2_y - centre_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)  # distance between the centres
+        one_by_normal_square = 1.0/normal_divisor
+        # square of the height over the line of the centres
         height_square = (
             0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
             *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
             *one_by_normal_square
         )
-        # the rods do not meet
-        if not (height_square >= -link_length_2_squared_times_rounding):
-            return Status.IMPOSSIBLE
-        # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        flange_x = centre_1_x + foot_x - apart_2_y*rise
-        foot_y = along_centres*apart_2_y
-        flange_y = centre_1_y + foot_y + apart_2_x*rise
-        # rod upper
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5*(normal_divisor + part_of_foot_fraction)*one_by_normal_square
+        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        flange_x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal
+        foot_y = centre_1_to_2_y*foot_fraction
+        flange_y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal
+        # rod upper: known part of its vector
         if swap_xy:
             span_upper_x = flange_y
             span_upper_y = flange_x
         else:
             span_upper_x = flange_x
             span_upper_y = flange_y
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
+            return Status.IMPOSSIBLE
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
+        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
+        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
         branch_w = (
             (
                 (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)*cos_a2

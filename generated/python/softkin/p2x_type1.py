@@ -82,14 +82,14 @@ class Constants(NamedTuple):
     highest_a2: float
     machine_scale: float
     tie: float
-    apart_2_y: float
+    centre_1_to_2_y: float
     assembly_sign: float
-    apart_2_y_squared: float
+    centre_1_to_2_y_squared: float
     part_of_normal_divisor: float
     arm_length_1_squared_times_rounding: float
     arm_length_1_plus_arm_length_2: float
     arm_length_1_minus_arm_length_2: float
-    part_of_along_centres: float
+    part_of_foot_fraction: float
     machine_scale_times_plane: float
     arm_length_2_squared_times_rounding: float
     part_of_type2_arms_aligned: float
@@ -269,7 +269,7 @@ class P2XType1(OffsetKinematics):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
@@ -277,22 +277,23 @@ class P2XType1(OffsetKinematics):
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        machine_scale = arm_length_1 + arm_length_2  # a length of the machine
+        machine_scale = arm_length_1 + arm_length_2  # characteristic length of the machine
         tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
-        apart_2_y = rail_y_2 - rail_y_1
-        assembly_sign = 1.0 if tcp_above else -1.0  # assembly mode of this machine
-        apart_2_y_squared = apart_2_y*apart_2_y
+        centre_1_to_2_y = rail_y_2 - rail_y_1
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = 1.0 if tcp_above else -1.0
+        centre_1_to_2_y_squared = centre_1_to_2_y*centre_1_to_2_y
         part_of_normal_divisor = 1e-22*arm_length_1*arm_length_1
         arm_length_1_squared_times_rounding = 1e-12*arm_length_1*arm_length_1
         arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
-        part_of_along_centres = arm_length_1_minus_arm_length_2*arm_length_1_plus_arm_length_2
+        part_of_foot_fraction = arm_length_1_minus_arm_length_2*arm_length_1_plus_arm_length_2
         machine_scale_times_plane = 1e-6*machine_scale
         arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
         part_of_type2_arms_aligned = assembly_sign/(arm_length_1*arm_length_2)
@@ -305,12 +306,12 @@ class P2XType1(OffsetKinematics):
             lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
             highest_a1=highest_a1, lower_a2=effective_lower_a2, upper_a2=effective_upper_a2,
             unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2, machine_scale=machine_scale,
-            tie=tie, apart_2_y=apart_2_y, assembly_sign=assembly_sign, apart_2_y_squared=apart_2_y_squared,
-            part_of_normal_divisor=part_of_normal_divisor,
+            tie=tie, centre_1_to_2_y=centre_1_to_2_y, assembly_sign=assembly_sign,
+            centre_1_to_2_y_squared=centre_1_to_2_y_squared, part_of_normal_divisor=part_of_normal_divisor,
             arm_length_1_squared_times_rounding=arm_length_1_squared_times_rounding,
             arm_length_1_plus_arm_length_2=arm_length_1_plus_arm_length_2,
             arm_length_1_minus_arm_length_2=arm_length_1_minus_arm_length_2,
-            part_of_along_centres=part_of_along_centres, machine_scale_times_plane=machine_scale_times_plane,
+            part_of_foot_fraction=part_of_foot_fraction, machine_scale_times_plane=machine_scale_times_plane,
             arm_length_2_squared_times_rounding=arm_length_2_squared_times_rounding,
             part_of_type2_arms_aligned=part_of_type2_arms_aligned,
             arm_length_1_times_arm_length_2=arm_length_1_times_arm_length_2,
@@ -321,36 +322,36 @@ class P2XType1(OffsetKinematics):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        apart_2_y = k.apart_2_y
-        apart_2_y_squared = k.apart_2_y_squared
         arm_length_1 = k.arm_length_1
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
+        centre_1_to_2_y = k.centre_1_to_2_y
+        centre_1_to_2_y_squared = k.centre_1_to_2_y_squared
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
+        part_of_foot_fraction = k.part_of_foot_fraction
         part_of_normal_divisor = k.part_of_normal_divisor
         rail_y_1 = k.rail_y_1
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
-        pivot_1_x = a1 + tcp_offset_1  # rod 1
+        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
         a2 = axis_a2 - offset_a2
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
         one_by_normal_square = 1.0/normal_square
-        # the square of the height over the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(between_centres - arm_length_1_plus_arm_length_2)
             *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
@@ -359,13 +360,14 @@ class P2XType1(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        foot_y = along_centres*apart_2_y
-        y = foot_y + rail_y_1 + apart_2_x*rise
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5*(normal_square + part_of_foot_fraction)*one_by_normal_square
+        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
+        foot_y = centre_1_to_2_y*foot_fraction
+        y = foot_y + rail_y_1 + centre_1_to_2_x*height_by_normal
         branch_carriage_1 = (x - pivot_1_x)/arm_length_1
         branch_carriage_2 = (pivot_2_x - x)/arm_length_2
         return (
@@ -378,29 +380,29 @@ class P2XType1(OffsetKinematics):
         """The rotation of the frame."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        apart_2_y_squared = k.apart_2_y_squared
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
+        centre_1_to_2_y_squared = k.centre_1_to_2_y_squared
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         part_of_normal_divisor = k.part_of_normal_divisor
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
-        pivot_1_x = a1 + tcp_offset_1  # rod 1
+        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
         a2 = axis_a2 - offset_a2
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        # the square of the height over the centres
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(between_centres - arm_length_1_plus_arm_length_2)
             *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
@@ -431,30 +433,30 @@ class P2XType1(OffsetKinematics):
         rail_y_2 = k.rail_y_2
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        span_1_y = y - rail_y_1  # rod 1
-        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        span_1_y = y - rail_y_1
+        radicand_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
+        if not (radicand_a1 >= -arm_length_1_squared_times_rounding):
             missing = 0.5*(abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_y = y - rail_y_2  # rod 2
-        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        span_2_y = y - rail_y_2
+        radicand_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
+        if not (radicand_a2 >= -arm_length_2_squared_times_rounding):
             missing = 0.5*(abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_1_x = x - tcp_offset_1  # rod 1
-        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
+        span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
+        a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1
         rod_1_x = span_1_x - a1
-        span_2_x = tcp_offset_2 + x  # rod 2
-        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
+        span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
+        a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
         rod_2_x = span_2_x - a2
         type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -495,8 +497,6 @@ class P2XType1(OffsetKinematics):
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        apart_2_y = k.apart_2_y
-        apart_2_y_squared = k.apart_2_y_squared
         arm_length_1 = k.arm_length_1
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
@@ -504,29 +504,31 @@ class P2XType1(OffsetKinematics):
         arm_length_1_times_arm_length_2 = k.arm_length_1_times_arm_length_2
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
+        centre_1_to_2_y = k.centre_1_to_2_y
+        centre_1_to_2_y_squared = k.centre_1_to_2_y_squared
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
+        part_of_foot_fraction = k.part_of_foot_fraction
         part_of_normal_divisor = k.part_of_normal_divisor
         rail_y_1 = k.rail_y_1
         rail_y_2 = k.rail_y_2
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
-        pivot_1_x = a1 + tcp_offset_1  # rod 1
+        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
         a2 = axis_a2 - offset_a2
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
         one_by_normal_square = 1.0/normal_square
-        # the square of the height over the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(between_centres - arm_length_1_plus_arm_length_2)
             *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
@@ -535,17 +537,18 @@ class P2XType1(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5*(normal_square + part_of_foot_fraction)*one_by_normal_square
+        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
         rod_1_x = x - pivot_1_x
         margin_upright_1 = rod_1_x/arm_length_1
         rod_2_x = x - pivot_2_x
         margin_upright_2 = -rod_2_x/arm_length_2
-        foot_y = along_centres*apart_2_y
-        y = foot_y + rail_y_1 + apart_2_x*rise
+        foot_y = centre_1_to_2_y*foot_fraction
+        y = foot_y + rail_y_1 + centre_1_to_2_x*height_by_normal
         rod_1_y = y - rail_y_1
         rod_2_y = y - rail_y_2
         margin_arms_aligned = (rod_1_x*rod_2_y - rod_1_y*rod_2_x)/arm_length_1_times_arm_length_2
@@ -555,36 +558,36 @@ class P2XType1(OffsetKinematics):
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        apart_2_y = k.apart_2_y
-        apart_2_y_squared = k.apart_2_y_squared
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
         assembly_sign = k.assembly_sign
+        centre_1_to_2_y = k.centre_1_to_2_y
+        centre_1_to_2_y_squared = k.centre_1_to_2_y_squared
         machine_scale_squared_times_free_angle = k.machine_scale_squared_times_free_angle
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
+        part_of_foot_fraction = k.part_of_foot_fraction
         part_of_normal_divisor = k.part_of_normal_divisor
         rail_y_1 = k.rail_y_1
         rail_y_2 = k.rail_y_2
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
-        pivot_1_x = a1 + tcp_offset_1  # rod 1
+        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
         a2 = axis_a2 - offset_a2
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
         one_by_normal_square = 1.0/normal_square
-        # the square of the height over the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(between_centres - arm_length_1_plus_arm_length_2)
             *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
@@ -593,20 +596,21 @@ class P2XType1(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_y = along_centres*apart_2_y
-        y = foot_y + rail_y_1 + apart_2_x*rise
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5*(normal_square + part_of_foot_fraction)*one_by_normal_square
+        foot_y = centre_1_to_2_y*foot_fraction
+        y = foot_y + rail_y_1 + centre_1_to_2_x*height_by_normal
         slope_1_by_y = 2.0*(y - rail_y_1)
-        foot_x = along_centres*apart_2_x
-        x = foot_x + pivot_1_x - apart_2_y*rise
+        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
         slope_2_by_x = 2.0*(x - pivot_2_x)
         slope_1_by_y_times_slope_2_by_x = slope_1_by_y*slope_2_by_x
         slope_1_by_x = 2.0*(x - pivot_1_x)
         slope_2_by_y = 2.0*(y - rail_y_2)
         slope_1_by_x_times_slope_2_by_y = slope_1_by_x*slope_2_by_y
-        # of the closure by the position: zero in a type 2 singularity
+        # determinant dPhi/dx: zero in a type 2 singularity
         determinant = slope_1_by_x_times_slope_2_by_y - slope_1_by_y_times_slope_2_by_x
         # nothing controls the plate
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
@@ -646,7 +650,7 @@ class P2XType1(OffsetKinematics):
         rail_y_2 = k.rail_y_2
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
@@ -656,25 +660,25 @@ class P2XType1(OffsetKinematics):
         if not (abs(point_z - z) <= machine_scale_times_plane):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        flange_y = y - point_y  # the flange behind the point
-        span_1_y = flange_y - rail_y_1  # rod 1
-        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        flange_y = y - point_y  # position of the flange: the point less its offset
+        span_1_y = flange_y - rail_y_1
+        radicand_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
+        if not (radicand_a1 >= -arm_length_1_squared_times_rounding):
             missing = 0.5*(abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_y = flange_y - rail_y_2  # rod 2
-        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        span_2_y = flange_y - rail_y_2
+        radicand_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
+        if not (radicand_a2 >= -arm_length_2_squared_times_rounding):
             missing = 0.5*(abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        flange_x = x - point_x  # the flange behind the point
-        span_1_x = flange_x - tcp_offset_1  # rod 1
-        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
+        flange_x = x - point_x  # position of the flange: the point less its offset
+        span_1_x = flange_x - tcp_offset_1  # rod 1: known part of its vector
+        a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1
         rod_1_x = span_1_x - a1
-        span_2_x = flange_x + tcp_offset_2  # rod 2
-        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
+        span_2_x = flange_x + tcp_offset_2  # rod 2: known part of its vector
+        a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
         rod_2_x = span_2_x - a2
         type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -691,35 +695,35 @@ class P2XType1(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        apart_2_y = k.apart_2_y
-        apart_2_y_squared = k.apart_2_y_squared
         arm_length_1 = k.arm_length_1
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
+        centre_1_to_2_y = k.centre_1_to_2_y
+        centre_1_to_2_y_squared = k.centre_1_to_2_y_squared
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
+        part_of_foot_fraction = k.part_of_foot_fraction
         part_of_normal_divisor = k.part_of_normal_divisor
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
-        pivot_1_x = a1 + tcp_offset_1  # rod 1
+        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
         a2 = axis_a2 - offset_a2
-        pivot_2_x = a2 - tcp_offset_2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
         one_by_normal_square = 1.0/normal_square
-        # the square of the height over the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(between_centres - arm_length_1_plus_arm_length_2)
             *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
@@ -728,11 +732,12 @@ class P2XType1(OffsetKinematics):
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        flange_x = foot_x + pivot_1_x - apart_2_y*rise
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5*(normal_square + part_of_foot_fraction)*one_by_normal_square
+        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        flange_x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
         branch_carriage_1 = (flange_x - pivot_1_x)/arm_length_1
         branch_carriage_2 = (pivot_2_x - flange_x)/arm_length_2
         return (branch_carriage_1, branch_carriage_2)

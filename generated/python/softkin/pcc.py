@@ -18,8 +18,9 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 11 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 36 additions, 22 multiplications, 9 divisions, 2 square roots, 4 sines
-    inverse, all 2 branches open: 68 additions, 42 multiplications, 17 divisions, 4 square roots, 8 sines
+    inverse: 35 additions, 21 multiplications, 9 divisions, 2 square roots, 2 sines
+    inverse, all 2 branches open: 66 additions, 40 multiplications, 17 divisions, 4 square roots, 4 sines
+    a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 Angles are right-handed about +Z.
 
@@ -234,37 +235,37 @@ class PCC(OffsetKinematics):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_elbow < upper_elbow) or (abs(lower_elbow) + abs(upper_elbow) <= 0.0)):
             raise self._refusal(
                 "lower_elbow below upper_elbow, or both 0", lower_elbow=lower_elbow, upper_elbow=upper_elbow,
             )
-        unlimited_elbow = abs(lower_elbow) + abs(upper_elbow) <= 0.0  # elbow: no limit
+        unlimited_elbow = abs(lower_elbow) + abs(upper_elbow) <= 0.0  # elbow: whether it has no limits
         effective_lower_elbow = lower_elbow
         effective_upper_elbow = upper_elbow
         tolerance_elbow = 1e-9 + 1e-9*abs(effective_lower_elbow) + 1e-9*abs(effective_upper_elbow)
         lowest_elbow = -1e12 if unlimited_elbow else effective_lower_elbow - tolerance_elbow
         highest_elbow = 1e12 if unlimited_elbow else effective_upper_elbow + tolerance_elbow
-        machine_scale = link_length_1 + link_length_2  # a length of the machine
+        machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
         machine_scale_times_plane = 1e-6*machine_scale
         machine_scale_times_free_angle = 1e-11*machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
@@ -291,24 +292,24 @@ class PCC(OffsetKinematics):
         link_length_2 = k.link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        x = link_length_1*cos_a1 + link_length_2*cos_a2  # x: affine in the x equation
+        x = link_length_1*cos_a1 + link_length_2*cos_a2  # x from the x equation, which is linear in it
         sin_a1 = sin(a1)
         sin_a2 = sin(a2)
-        y = link_length_1*sin_a1 + link_length_2*sin_a2  # y: affine in the y equation
+        y = link_length_1*sin_a1 + link_length_2*sin_a2  # y from the y equation, which is linear in it
         sin_a2_from_a1 = -sin(a1 - a2)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (sin_a2_from_a1,))
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a1, axis_a2 = axes
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -334,7 +335,7 @@ class PCC(OffsetKinematics):
         offset_a2 = k.offset_a2
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
@@ -344,8 +345,8 @@ class PCC(OffsetKinematics):
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        reach = sqrt(x*x + y*y)
-        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
+        # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         )
@@ -353,10 +354,10 @@ class PCC(OffsetKinematics):
         one_plus_cos_a2_from_a1 = (
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         )
-        # twice the scale, with the rounding of its parts
-        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             missing = (
@@ -367,11 +368,13 @@ class PCC(OffsetKinematics):
                 - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
+        # sine squared, times the squared scale
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
-            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
+            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
+            /divisor_of_cos_a2_from_a1
         )
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1 = link_length_2*sin_a2_from_a1
@@ -382,15 +385,16 @@ class PCC(OffsetKinematics):
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2_from_a1 = arctan2(sin_a2_from_a1 + 0.0, cos_a2_from_a1 + 0.0)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1)/DEGREE  # a2: what the sum a2_from_a1 leaves; A2: its turn
+        # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
+        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1)/DEGREE
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -483,7 +487,7 @@ class PCC(OffsetKinematics):
         k = self._constants
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -499,7 +503,7 @@ class PCC(OffsetKinematics):
         link_length_2 = k.link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -536,7 +540,7 @@ class PCC(OffsetKinematics):
         offset_a2 = k.offset_a2
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
@@ -546,10 +550,10 @@ class PCC(OffsetKinematics):
         if not (abs(point_z - z) <= machine_scale_times_plane):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        flange_x = x - point_x  # the flange behind the point
-        flange_y = y - point_y  # the flange behind the point
-        reach = sqrt(flange_x*flange_x + flange_y*flange_y)
-        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        flange_x = x - point_x  # position of the flange: the point less its offset
+        flange_y = y - point_y  # position of the flange: the point less its offset
+        reach = sqrt(flange_x*flange_x + flange_y*flange_y)  # distance that the remaining links must span
+        # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         )
@@ -557,10 +561,10 @@ class PCC(OffsetKinematics):
         one_plus_cos_a2_from_a1 = (
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
         )
-        # twice the scale, with the rounding of its parts
-        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             missing = (
@@ -571,11 +575,13 @@ class PCC(OffsetKinematics):
                 - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
+        # sine squared, times the squared scale
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
-            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
+            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
+            /divisor_of_cos_a2_from_a1
         )
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1 = link_length_2*sin_a2_from_a1
@@ -586,15 +592,16 @@ class PCC(OffsetKinematics):
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2_from_a1 = arctan2(sin_a2_from_a1 + 0.0, cos_a2_from_a1 + 0.0)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1)/DEGREE  # a2: what the sum a2_from_a1 leaves; A2: its turn
+        # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
+        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1)/DEGREE
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -605,7 +612,7 @@ class PCC(OffsetKinematics):
         k = self._constants
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)

@@ -17,7 +17,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 6 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 12 additions, 5 multiplications, 3 divisions, 1 square roots, 3 sines
+    inverse: 11 additions, 4 multiplications, 3 divisions, 1 square roots, 1 sines
+    a branch at a singular pose, more: 1 additions, 1 multiplications, 0 divisions, 0 square roots, 2 sines
 
 As CODESYS's own block it has no orientation mode "Axis": a point beside the arm has two radii.
 

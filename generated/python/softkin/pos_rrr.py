@@ -21,8 +21,9 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 26 multiplications, 4 divisions, 0 square roots, 8 sines
-    inverse: 64 additions, 49 multiplications, 15 divisions, 5 square roots, 7 sines
-    inverse, all 4 branches open: 253 additions, 196 multiplications, 60 divisions, 20 square roots, 28 sines
+    inverse: 51 additions, 36 multiplications, 13 divisions, 4 square roots, 3 sines
+    inverse, all 4 branches open: 201 additions, 144 multiplications, 52 divisions, 16 square roots, 12 sines
+    a branch at a singular pose, more: 11 additions, 11 multiplications, 2 divisions, 1 square roots, 4 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -283,40 +284,40 @@ class PosRRR(OffsetKinematics):
             raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
-        machine_scale = a1 + a2 + a3 + d4  # a length of the machine
-        effective_q3_2 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
-        rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
+        machine_scale = a1 + a2 + a3 + d4  # characteristic length of the machine
+        effective_q3_2 = sqrt(a3*a3 + d4*d4)  # effective length of the arm that q3 turns
+        rounding_q1 = 1e-34*machine_scale*machine_scale  # rounding error of a squared length
         size_q1_for_q3_2 = 2.0*abs(effective_q3_2)*a2
         d4_by_effective_q3_2 = d4/effective_q3_2
         a3_by_effective_q3_2 = a3/effective_q3_2
@@ -366,7 +367,7 @@ class PosRRR(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -410,7 +411,7 @@ class PosRRR(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -462,44 +463,25 @@ class PosRRR(OffsetKinematics):
         size_q1_for_q3_2 = k.size_q1_for_q3_2
         size_q1_for_q3_2_times_rounding = k.size_q1_for_q3_2_times_rounding
         twice_d3 = k.twice_d3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(x*x + y*y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
         if not (ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1):
             missing = 0.5*(abs(d3 - distance_q1) + abs(d3 + distance_q1)) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        wrist_y_from_q1 = z - d1  # what the unknown links must span
+        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
-        wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
-        # a later step needs this of q1: no larger in size than
-        value_q1_for_q3 = (
-            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
-            - a2_squared_plus_effective_q3_2_squared
-        )
-        rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
-        # to the boundary of the later step
-        if abs(rate_q1_for_q3) > size_q1_for_q3_2_times_rounding:
-            excess_q1_for_q3 = (
-                value_q1_for_q3 - size_q1_for_q3_2
-                if value_q1_for_q3 > 0.0
-                else size_q1_for_q3_2 + value_q1_for_q3
-            )
-            turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
-        else:
-            turn_q1_for_q3 = 0.0
-        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-        one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/distance_q1_squared
@@ -507,37 +489,66 @@ class PosRRR(OffsetKinematics):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
-        turned_cos_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
-        )
-        turned_sin_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
-        )
-        # what is left of its own equation
-        turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
-        # turned within rounding, where the rest can be reached
-        ahead_q1 = (
-            ahead_q1_before_q1_for_q3
-            if ahead_squared_q1 > machine_scale_squared_times_plane
-            else (
-                ahead_q1_before_q1_for_q3
-                if abs(value_q1_for_q3) <= size_q1_for_q3_2
-                else (
-                    ahead_q1_before_q1_for_q3
-                    if turned_cost_q1_for_q3 > machine_scale_times_rounding
-                    else turned_ahead_q1_for_q3
-                )
+        # turned, within rounding, to where q3 has a solution
+        if ahead_squared_q1 > machine_scale_squared_times_plane:
+            ahead_q1 = ahead_q1_before_q1_for_q3
+            cos_q1 = cos_q1_before_q1_for_q3
+            sin_q1 = sin_q1_before_q1_for_q3
+        else:
+            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
+            # q3 has solutions where this is within its bound
+            value_q1_for_q3 = (
+                wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+                - a2_squared_plus_effective_q3_2_squared
             )
-        )
-        wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
+            # turned, within rounding, to where q3 has a solution
+            if abs(value_q1_for_q3) <= size_q1_for_q3_2:
+                ahead_q1 = ahead_q1_before_q1_for_q3
+                cos_q1 = cos_q1_before_q1_for_q3
+                sin_q1 = sin_q1_before_q1_for_q3
+            else:
+                rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
+                # turn of q1 to the bound, to first order
+                if abs(rate_q1_for_q3) > size_q1_for_q3_2_times_rounding:
+                    excess_q1_for_q3 = (
+                        value_q1_for_q3 - size_q1_for_q3_2
+                        if value_q1_for_q3 > 0.0
+                        else size_q1_for_q3_2 + value_q1_for_q3
+                    )
+                    turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+                else:
+                    turn_q1_for_q3 = 0.0
+                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
+                turned_cos_q1_for_q3 = (
+                    one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
+                )
+                turned_sin_q1_for_q3 = (
+                    one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
+                )
+                # residual of the equation of q1
+                turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
+                # turned, within rounding, to where q3 has a solution
+                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
+                    ahead_q1 = ahead_q1_before_q1_for_q3
+                    cos_q1 = cos_q1_before_q1_for_q3
+                    sin_q1 = sin_q1_before_q1_for_q3
+                else:
+                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
+                    ahead_q1 = turned_ahead_q1_for_q3
+                    cos_q1 = turned_cos_q1_for_q3
+                    sin_q1 = turned_sin_q1_for_q3
+        wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
@@ -548,31 +559,14 @@ class PosRRR(OffsetKinematics):
                 - a2_plus_effective_q3_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # turned within rounding, where the rest can be reached
-        if ahead_squared_q1 > machine_scale_squared_times_plane:
-            cos_q1 = cos_q1_before_q1_for_q3
-            sin_q1 = sin_q1_before_q1_for_q3
-        else:
-            # turned within rounding, where the rest can be reached
-            if abs(value_q1_for_q3) <= size_q1_for_q3_2:
-                cos_q1 = cos_q1_before_q1_for_q3
-                sin_q1 = sin_q1_before_q1_for_q3
-            else:
-                # turned within rounding, where the rest can be reached
-                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
-                    cos_q1 = cos_q1_before_q1_for_q3
-                    sin_q1 = sin_q1_before_q1_for_q3
-                else:
-                    cos_q1 = turned_cos_q1_for_q3
-                    sin_q1 = turned_sin_q1_for_q3
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
@@ -582,16 +576,17 @@ class PosRRR(OffsetKinematics):
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3 = a3_by_effective_q3_2*cos_swing_q3 - d4_by_effective_q3_2*sin_swing_q3
         sin_q3 = a3_by_effective_q3_2*sin_swing_q3 + d4_by_effective_q3_2*cos_swing_q3
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -656,7 +651,7 @@ class PosRRR(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -699,7 +694,7 @@ class PosRRR(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -751,7 +746,7 @@ class PosRRR(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -821,53 +816,33 @@ class PosRRR(OffsetKinematics):
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         twice_a2 = k.twice_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
             and -1e9 <= ref_a3 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        tool_z = d3 + point_y  # the point seen from the last moving joint
-        ahead_squared_q1 = (distance_q1 + tool_z)*(distance_q1 - tool_z)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(x*x + y*y)  # distance of the point from the axis of q1
+        tool_z = d3 + point_y  # commanded point, in the frame of the last moving joint
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 + tool_z)*(distance_q1 - tool_z)
         distance_q1_squared = distance_q1*distance_q1
         # q1: out of reach
         if not (ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1):
             missing = 0.5*(abs(distance_q1 - tool_z) + abs(distance_q1 + tool_z)) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        tool_x = a3 + point_x  # the point seen from the last moving joint
-        tool_y = -d4 - point_z  # the point seen from the last moving joint
-        effective_q3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
+        tool_x = a3 + point_x  # commanded point, in the frame of the last moving joint
+        tool_y = -d4 - point_z  # commanded point, in the frame of the last moving joint
+        effective_q3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length of the arm that q3 turns
         # q3: its effective length is too short
         if not (effective_q3 > a2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        wrist_y_from_q1 = z - d1  # what the unknown links must span
+        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
-        wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
-        # a later step needs this of q1: no larger in size than
-        value_q1_for_q3 = (
-            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 - a2_squared
-            - effective_q3*effective_q3
-        )
-        size_q1_for_q3 = abs(effective_q3)*twice_a2
-        rate_q1_for_q3 = -2.0*tool_z*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
-        # to the boundary of the later step
-        if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
-            excess_q1_for_q3 = (
-                value_q1_for_q3 - size_q1_for_q3
-                if value_q1_for_q3 > 0.0
-                else size_q1_for_q3 + value_q1_for_q3
-            )
-            turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
-        else:
-            turn_q1_for_q3 = 0.0
-        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-        one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - tool_z*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - tool_z*y)/distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + tool_z*x)/distance_q1_squared
@@ -875,39 +850,69 @@ class PosRRR(OffsetKinematics):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
-        turned_cos_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
-        )
-        turned_sin_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
-        )
-        # what is left of its own equation
-        turned_cost_q1_for_q3 = abs(tool_z + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
-        # turned within rounding, where the rest can be reached
-        ahead_q1 = (
-            ahead_q1_before_q1_for_q3
-            if ahead_squared_q1 > machine_scale_squared_times_plane
-            else (
-                ahead_q1_before_q1_for_q3
-                if abs(value_q1_for_q3) <= size_q1_for_q3
-                else (
-                    ahead_q1_before_q1_for_q3
-                    if turned_cost_q1_for_q3 > machine_scale_times_rounding
-                    else turned_ahead_q1_for_q3
-                )
+        # turned, within rounding, to where q3 has a solution
+        if ahead_squared_q1 > machine_scale_squared_times_plane:
+            ahead_q1 = ahead_q1_before_q1_for_q3
+            cos_q1 = cos_q1_before_q1_for_q3
+            sin_q1 = sin_q1_before_q1_for_q3
+        else:
+            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
+            # q3 has solutions where this is within its bound
+            value_q1_for_q3 = (
+                wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 - a2_squared
+                - effective_q3*effective_q3
             )
-        )
-        wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
+            size_q1_for_q3 = abs(effective_q3)*twice_a2
+            # turned, within rounding, to where q3 has a solution
+            if abs(value_q1_for_q3) <= size_q1_for_q3:
+                ahead_q1 = ahead_q1_before_q1_for_q3
+                cos_q1 = cos_q1_before_q1_for_q3
+                sin_q1 = sin_q1_before_q1_for_q3
+            else:
+                rate_q1_for_q3 = -2.0*tool_z*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
+                # turn of q1 to the bound, to first order
+                if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
+                    excess_q1_for_q3 = (
+                        value_q1_for_q3 - size_q1_for_q3
+                        if value_q1_for_q3 > 0.0
+                        else size_q1_for_q3 + value_q1_for_q3
+                    )
+                    turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+                else:
+                    turn_q1_for_q3 = 0.0
+                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
+                turned_cos_q1_for_q3 = (
+                    one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
+                )
+                turned_sin_q1_for_q3 = (
+                    one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
+                )
+                # residual of the equation of q1
+                turned_cost_q1_for_q3 = abs(tool_z + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
+                # turned, within rounding, to where q3 has a solution
+                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
+                    ahead_q1 = ahead_q1_before_q1_for_q3
+                    cos_q1 = cos_q1_before_q1_for_q3
+                    sin_q1 = sin_q1_before_q1_for_q3
+                else:
+                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - tool_z*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
+                    ahead_q1 = turned_ahead_q1_for_q3
+                    cos_q1 = turned_cos_q1_for_q3
+                    sin_q1 = turned_sin_q1_for_q3
+        wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
         a2_plus_effective_q3 = a2 + effective_q3
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)
         a2_minus_effective_q3 = a2 - effective_q3
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
@@ -918,33 +923,17 @@ class PosRRR(OffsetKinematics):
                 - a2 - effective_q3 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # turned within rounding, where the rest can be reached
-        if ahead_squared_q1 > machine_scale_squared_times_plane:
-            cos_q1 = cos_q1_before_q1_for_q3
-            sin_q1 = sin_q1_before_q1_for_q3
-        else:
-            # turned within rounding, where the rest can be reached
-            if abs(value_q1_for_q3) <= size_q1_for_q3:
-                cos_q1 = cos_q1_before_q1_for_q3
-                sin_q1 = sin_q1_before_q1_for_q3
-            else:
-                # turned within rounding, where the rest can be reached
-                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
-                    cos_q1 = cos_q1_before_q1_for_q3
-                    sin_q1 = sin_q1_before_q1_for_q3
-                else:
-                    cos_q1 = turned_cos_q1_for_q3
-                    sin_q1 = turned_sin_q1_for_q3
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3 = (tool_x*cos_swing_q3 + tool_y*sin_swing_q3)/effective_q3
         sin_q3 = (tool_x*sin_swing_q3 - tool_y*cos_swing_q3)/effective_q3
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = tool_y*cos_q3 + tool_x*sin_q3
             arm_across_q2 = a2 + tool_x*cos_q3 - tool_y*sin_q3
@@ -954,14 +943,14 @@ class PosRRR(OffsetKinematics):
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -980,7 +969,7 @@ class PosRRR(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= axis_a1 <= 1e9
             and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9
@@ -1012,8 +1001,8 @@ class PosRRR(OffsetKinematics):
         branch_arm = (x*cos_q1 + y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        tool_x = a3 + point_x  # the point seen from the last moving joint
-        tool_y = -d4 - point_z  # the point seen from the last moving joint
+        tool_x = a3 + point_x  # commanded point, in the frame of the last moving joint
+        tool_y = -d4 - point_z  # commanded point, in the frame of the last moving joint
         branch_elbow = (-tool_y*cos_q3 - tool_x*sin_q3)/machine_scale
         return (branch_arm, branch_elbow)
 

@@ -19,8 +19,9 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 12 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 33 additions, 20 multiplications, 8 divisions, 2 square roots, 4 sines
-    inverse, all 2 branches open: 65 additions, 40 multiplications, 16 divisions, 4 square roots, 8 sines
+    inverse: 32 additions, 19 multiplications, 8 divisions, 2 square roots, 2 sines
+    inverse, all 2 branches open: 63 additions, 38 multiplications, 16 divisions, 4 square roots, 4 sines
+    a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -232,35 +233,35 @@ class Scara3CCZ(OffsetKinematics):
             raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        machine_scale = link_length_1 + link_length_2  # a length of the machine
+        machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
         machine_scale_times_free_angle = 1e-11*machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
@@ -287,7 +288,7 @@ class Scara3CCZ(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -309,7 +310,7 @@ class Scara3CCZ(OffsetKinematics):
         k = self._constants
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -340,20 +341,21 @@ class Scara3CCZ(OffsetKinematics):
         offset_a3 = k.offset_a3
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        reach = sqrt(x*x + y*y)
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
@@ -364,9 +366,9 @@ class Scara3CCZ(OffsetKinematics):
                 - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
-        # a1: linear pair in the x and y equations; its reference where it is free
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
@@ -376,14 +378,14 @@ class Scara3CCZ(OffsetKinematics):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         axis_a3 = offset_a3 + z
@@ -435,7 +437,7 @@ class Scara3CCZ(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
@@ -450,7 +452,7 @@ class Scara3CCZ(OffsetKinematics):
         link_length_2 = k.link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -480,7 +482,7 @@ class Scara3CCZ(OffsetKinematics):
         link_length_2 = k.link_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -522,27 +524,28 @@ class Scara3CCZ(OffsetKinematics):
         offset_a3 = k.offset_a3
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        tool_x = link_length_2 + point_x  # the point seen from the last moving joint
-        effective_a2 = sqrt(point_y*point_y + tool_x*tool_x)  # effective length that the angle turns
+        tool_x = link_length_2 + point_x  # commanded point, in the frame of the last moving joint
+        effective_a2 = sqrt(point_y*point_y + tool_x*tool_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach)*(effective_a2 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2)*(effective_a2 - link_length_1_minus_reach)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
@@ -551,11 +554,12 @@ class Scara3CCZ(OffsetKinematics):
                 - effective_a2 - link_length_1 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (tool_x*cos_swing_a2 + point_y*sin_swing_a2)/effective_a2
         sin_a2 = (tool_x*sin_swing_a2 - point_y*cos_swing_a2)/effective_a2
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - point_y*sin_a2
             arm_across_a1 = point_y*cos_a2 + tool_x*sin_a2
@@ -565,17 +569,17 @@ class Scara3CCZ(OffsetKinematics):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        a3 = z - point_z  # a3: affine in the z equation
+        a3 = z - point_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3)
 
@@ -587,7 +591,7 @@ class Scara3CCZ(OffsetKinematics):
         link_length_2 = k.link_length_2
         machine_scale = k.machine_scale
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9
             and -1e9 <= axis_a3 <= 1e9
@@ -596,7 +600,7 @@ class Scara3CCZ(OffsetKinematics):
         a2 = DEGREE*(axis_a2 - offset_a2)
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
-        tool_x = link_length_2 + point_x  # the point seen from the last moving joint
+        tool_x = link_length_2 + point_x  # commanded point, in the frame of the last moving joint
         branch_elbow = (point_y*cos_a2 + tool_x*sin_a2)/machine_scale
         return (branch_elbow,)
 

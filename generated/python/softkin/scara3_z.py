@@ -20,8 +20,10 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 19 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 82 additions, 72 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 131 additions, 99 multiplications, 35 divisions, 8 square roots, 10 sines
+    inverse: 49 additions, 26 multiplications, 13 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches open: 97 additions, 52 multiplications, 26 divisions, 6 square roots, 6 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
 
@@ -275,46 +277,46 @@ class Scara3Z(TwistChoice):
             raise self._refusal("upper_z: Z: upper limit of the axis, both 0: no limit", upper_z=upper_z)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_z < upper_z) or (abs(lower_z) + abs(upper_z) <= 0.0)):
             raise self._refusal("lower_z below upper_z, or both 0", lower_z=lower_z, upper_z=upper_z)
-        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: no limit
+        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: whether it has no limits
         effective_lower_z = lower_z
         effective_upper_z = upper_z
         tolerance_z = 1e-9 + 1e-9*abs(effective_lower_z) + 1e-9*abs(effective_upper_z)
         lowest_z = -1e12 if unlimited_z else effective_lower_z - tolerance_z
         highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
-        machine_scale = arm_length_1 + arm_length_2 + arm_length_3  # a length of the machine
+        machine_scale = arm_length_1 + arm_length_2 + arm_length_3  # characteristic length of the machine
         machine_scale_times_free_angle = 1e-11*machine_scale
         arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
@@ -344,7 +346,7 @@ class Scara3Z(TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_z = k.offset_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
         ):
@@ -373,7 +375,7 @@ class Scara3Z(TwistChoice):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
         ):
@@ -412,30 +414,32 @@ class Scara3Z(TwistChoice):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         cos_heading = heading_along/heading_length
-        wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - arm_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_length
-        wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        wrist_y = y - arm_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
@@ -446,9 +450,9 @@ class Scara3Z(TwistChoice):
                 - arm_length_1_plus_arm_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
-        # a1: linear pair in the x and y equations; its reference where it is free
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
             arm_across_a1 = arm_length_2*sin_a2
@@ -459,21 +463,21 @@ class Scara3Z(TwistChoice):
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        # a3: what the sum a123 leaves; A3: its turn
+        # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
@@ -539,7 +543,7 @@ class Scara3Z(TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_z = axes
         k = self._constants
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
         ):
@@ -558,7 +562,7 @@ class Scara3Z(TwistChoice):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
         ):
@@ -599,7 +603,7 @@ class Scara3Z(TwistChoice):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
         ):
@@ -631,7 +635,8 @@ class Scara3Z(TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way

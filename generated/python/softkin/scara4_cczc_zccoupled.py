@@ -21,8 +21,10 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 18 additions, 10 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 84 additions, 72 multiplications, 20 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 135 additions, 99 multiplications, 31 divisions, 8 square roots, 10 sines
+    inverse: 49 additions, 26 multiplications, 11 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches open: 97 additions, 52 multiplications, 22 divisions, 6 square roots, 6 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 The coupling may be given as travel per turn (pitch) or per degree (gear coupling), never both.
 
@@ -319,29 +321,29 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
@@ -349,7 +351,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        # a4: no limit
+        # a4: whether it has no limits
         unlimited_a4 = (
             (abs(lower_a4) + abs(upper_a4) <= 0.0) and (abs(gear_coupling/DEGREE - pitch_zc/(360.0*DEGREE)) <= 0.0)
         )
@@ -366,10 +368,10 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
         lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
         highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
-        machine_scale = link_length_1 + link_length_2  # a length of the machine
+        machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
         part_of_constant = -1.0 if flange_down else 1.0
         part_of_z = (gear_coupling - pitch_zc/360.0)/DEGREE
         machine_scale_times_free_angle = 1e-11*machine_scale
@@ -407,7 +409,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         offset_a4 = k.offset_a4
         part_of_constant = k.part_of_constant
         part_of_z = k.part_of_z
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
@@ -446,7 +448,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a4 = k.offset_a4
         part_of_constant = k.part_of_constant
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
@@ -490,13 +492,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a4 = k.single_a4
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a4 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         if flange_down:
             heading_along = r11 - r22
             heading_across = r12 + r21
@@ -507,14 +509,15 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
-        reach = sqrt(x*x + y*y)
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
@@ -525,9 +528,9 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
                 - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
-        # a1: linear pair in the x and y equations; its reference where it is free
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
@@ -538,26 +541,26 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(heading_across + 0.0, heading_along + 0.0)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
-        a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
-        a3 = z - a4*part_of_z  # a3: affine in the z equation
+        a4 = DEGREE*(axis_a4 - offset_a4)  # A4: joint value with its whole turns
+        a3 = z - a4*part_of_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
@@ -620,7 +623,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
@@ -638,7 +641,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         part_of_constant_2 = k.part_of_constant_2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
@@ -678,7 +681,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         part_of_constant_2 = k.part_of_constant_2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
@@ -707,7 +710,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         k = self._constants
         flange_down = k.flange_down
         part_of_constant = k.part_of_constant
-        # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         if flange_down:
             heading_along = r11 - r22
             heading_across = r12 + r21
@@ -750,7 +753,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         part_of_z = k.part_of_z
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
@@ -761,32 +764,33 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_a4 = cos(free_a4)
         sin_a4 = sin(free_a4)
         point_y_times_sin_a4 = point_y*sin_a4
-        # the point seen from the last moving joint
+        # commanded point, in the frame of the last moving joint
         tool_x = (
             link_length_2 + (2.0*point_y_times_sin_a4 if flange_down else 0.0) + point_x*cos_a4 - point_y_times_sin_a4
         )
         point_x_times_sin_a4 = point_x*sin_a4
         cos_a4_times_point_y = point_y*cos_a4
-        # the point seen from the last moving joint
+        # commanded point, in the frame of the last moving joint
         tool_y = (
             point_x_times_sin_a4 - cos_a4_times_point_y
             if flange_down
             else cos_a4_times_point_y + point_x_times_sin_a4
         )
-        effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
+        effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach)*(effective_a2 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2)*(effective_a2 - link_length_1_minus_reach)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
@@ -795,11 +799,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
                 - effective_a2 - link_length_1 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (tool_x*cos_swing_a2 + tool_y*sin_swing_a2)/effective_a2
         sin_a2 = (tool_x*sin_swing_a2 - tool_y*cos_swing_a2)/effective_a2
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
             arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
@@ -809,19 +814,19 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        # the point seen from the last moving joint
+        # commanded point, in the frame of the last moving joint
         tool_z = point_z + (-2.0*point_z if flange_down else 0.0) + free_a4*part_of_z
-        a3 = z - tool_z  # a3: affine in the z equation
+        a3 = z - tool_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, ref_a4)
 
@@ -835,7 +840,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         machine_scale = k.machine_scale
         offset_a2 = k.offset_a2
         offset_a4 = k.offset_a4
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9
             and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
@@ -848,13 +853,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_a4 = cos(a4)
         sin_a4 = sin(a4)
         point_y_times_sin_a4 = point_y*sin_a4
-        # the point seen from the last moving joint
+        # commanded point, in the frame of the last moving joint
         tool_x = (
             link_length_2 + (2.0*point_y_times_sin_a4 if flange_down else 0.0) + point_x*cos_a4 - point_y_times_sin_a4
         )
         point_x_times_sin_a4 = point_x*sin_a4
         cos_a4_times_point_y = point_y*cos_a4
-        # the point seen from the last moving joint
+        # commanded point, in the frame of the last moving joint
         tool_y = (
             point_x_times_sin_a4 - cos_a4_times_point_y
             if flange_down

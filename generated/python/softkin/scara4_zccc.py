@@ -20,8 +20,10 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 19 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 82 additions, 72 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 131 additions, 99 multiplications, 35 divisions, 8 square roots, 10 sines
+    inverse: 49 additions, 26 multiplications, 13 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches open: 97 additions, 52 multiplications, 26 divisions, 6 square roots, 6 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
 
 The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
 
@@ -280,7 +282,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             raise self._refusal("upper_a4: A4: upper limit of the axis, both 0: no limit", upper_a4=upper_a4)
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
@@ -288,38 +290,38 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: no limit
+        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: whether it has no limits
         effective_lower_a4 = lower_a4
         effective_upper_a4 = upper_a4
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
         lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
         highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
-        machine_scale = link_length_1 + link_length_2 + link_length_3  # a length of the machine
+        machine_scale = link_length_1 + link_length_2 + link_length_3  # characteristic length of the machine
         machine_scale_times_free_angle = 1e-11*machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
@@ -351,7 +353,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
@@ -380,7 +382,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
@@ -419,30 +421,32 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         single_a4 = k.single_a4
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a2 <= 1e9
             and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         cos_heading = heading_along/heading_length
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_length
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        wrist_y = y - link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
+        # law of cosines for a3: x² + y²: 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
             missing = (
@@ -454,9 +458,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         axis_a1 = offset_a1 + z
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
-        # a2: linear pair in the x and y equations; its reference where it is free
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
+        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
@@ -467,21 +471,21 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             direction_x_a2 = cos(free_a2)
             direction_y_a2 = sin(free_a2)
         angle_a2 = arctan2(direction_y_a2 + 0.0, direction_x_a2 + 0.0)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_a3 = arctan2(sin_a3 + 0.0, cos_a3 + 0.0)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + angle_a3/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + angle_a3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        # a4: what the sum a234 leaves; A4: its turn
+        # a4 from the sum a234 of angles about parallel axes; A4: whole turns added
         axis_a4 = offset_a4 + (angle_heading - angle_a2 - angle_a3)/DEGREE
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
@@ -546,7 +550,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
@@ -565,7 +569,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
@@ -606,7 +610,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
@@ -638,7 +642,8 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -671,7 +676,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a4 = k.offset_a4
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
@@ -682,23 +687,25 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         cos_a4 = cos(free_a4)
         sin_a4 = sin(free_a4)
         link_length_3_plus_point_x = link_length_3 + point_x
-        # the point seen from the last moving joint
+        # commanded point, in the frame of the last moving joint
         tool_x = link_length_2 + link_length_3_plus_point_x*cos_a4 - point_y*sin_a4
-        tool_y = point_y*cos_a4 + link_length_3_plus_point_x*sin_a4  # the point seen from the last moving joint
-        effective_a3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
+        # commanded point, in the frame of the last moving joint
+        tool_y = point_y*cos_a4 + link_length_3_plus_point_x*sin_a4
+        effective_a3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a3: x² + y²: 1 - cosine, times a scale
         one_less_cos_a3 = (effective_a3 + link_length_1_minus_reach)*(effective_a3 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (link_length_1_plus_reach - effective_a3)*(effective_a3 - link_length_1_minus_reach)
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = (
@@ -707,13 +714,14 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
                 - effective_a3 - link_length_1 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        a1 = z - point_z  # a1: affine in the z equation
+        a1 = z - point_z  # a1 from the z equation, which is linear in it
         axis_a1 = a1 + offset_a1
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = (tool_x*cos_swing_a3 + tool_y*sin_swing_a3)/effective_a3
         sin_a3 = (tool_x*sin_swing_a3 - tool_y*cos_swing_a3)/effective_a3
-        # a2: linear pair in the x and y equations; its reference where it is free
+        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + tool_x*cos_a3 - tool_y*sin_a3
             arm_across_a2 = tool_y*cos_a3 + tool_x*sin_a3
@@ -723,14 +731,14 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             direction_x_a2 = cos(free_a2)
             direction_y_a2 = sin(free_a2)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(direction_y_a2, direction_x_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(direction_y_a2, direction_x_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3, ref_a4)
@@ -745,7 +753,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         machine_scale = k.machine_scale
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9
             and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
@@ -758,9 +766,10 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         sin_a4 = sin(a4)
         cos_a4 = cos(a4)
         link_length_3_plus_point_x = link_length_3 + point_x
-        # the point seen from the last moving joint
+        # commanded point, in the frame of the last moving joint
         tool_x = link_length_2 + link_length_3_plus_point_x*cos_a4 - point_y*sin_a4
-        tool_y = point_y*cos_a4 + link_length_3_plus_point_x*sin_a4  # the point seen from the last moving joint
+        # commanded point, in the frame of the last moving joint
+        tool_y = point_y*cos_a4 + link_length_3_plus_point_x*sin_a4
         branch_elbow = (tool_y*cos_a3 + tool_x*sin_a3)/machine_scale
         return (branch_elbow,)
 

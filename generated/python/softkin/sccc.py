@@ -20,8 +20,10 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 21 additions, 12 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 100 additions, 88 multiplications, 26 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 161 additions, 125 multiplications, 41 divisions, 8 square roots, 10 sines
+    inverse: 59 additions, 37 multiplications, 15 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches open: 111 additions, 68 multiplications, 28 divisions, 6 square roots, 6 sines
+    repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, more: 9 additions, 6 multiplications, 2 divisions, 0 square roots, 2 sines
 
 A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.
 
@@ -336,35 +338,35 @@ class SCCC(OffsetKinematics, TwistChoice):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_joint_2 < upper_joint_2) or (abs(lower_joint_2) + abs(upper_joint_2) <= 0.0)):
@@ -372,7 +374,7 @@ class SCCC(OffsetKinematics, TwistChoice):
                 "lower_joint_2 below upper_joint_2, or both 0", lower_joint_2=lower_joint_2,
                 upper_joint_2=upper_joint_2,
             )
-        unlimited_joint_2 = abs(lower_joint_2) + abs(upper_joint_2) <= 0.0  # joint_2: no limit
+        unlimited_joint_2 = abs(lower_joint_2) + abs(upper_joint_2) <= 0.0  # joint_2: whether it has no limits
         effective_lower_joint_2 = lower_joint_2
         effective_upper_joint_2 = upper_joint_2
         tolerance_joint_2 = 1e-9 + 1e-9*abs(effective_lower_joint_2) + 1e-9*abs(effective_upper_joint_2)
@@ -383,13 +385,13 @@ class SCCC(OffsetKinematics, TwistChoice):
                 "lower_joint_3 below upper_joint_3, or both 0", lower_joint_3=lower_joint_3,
                 upper_joint_3=upper_joint_3,
             )
-        unlimited_joint_3 = abs(lower_joint_3) + abs(upper_joint_3) <= 0.0  # joint_3: no limit
+        unlimited_joint_3 = abs(lower_joint_3) + abs(upper_joint_3) <= 0.0  # joint_3: whether it has no limits
         effective_lower_joint_3 = lower_joint_3
         effective_upper_joint_3 = upper_joint_3
         tolerance_joint_3 = 1e-9 + 1e-9*abs(effective_lower_joint_3) + 1e-9*abs(effective_upper_joint_3)
         lowest_joint_3 = -1e12 if unlimited_joint_3 else effective_lower_joint_3 - tolerance_joint_3
         highest_joint_3 = 1e12 if unlimited_joint_3 else effective_upper_joint_3 + tolerance_joint_3
-        machine_scale = link_length_1 + link_length_2 + link_length_3  # a length of the machine
+        machine_scale = link_length_1 + link_length_2 + link_length_3  # characteristic length of the machine
         machine_scale_times_plane = 1e-6*machine_scale
         machine_scale_times_free_angle = 1e-11*machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
@@ -437,7 +439,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -468,7 +470,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -511,13 +513,14 @@ class SCCC(OffsetKinematics, TwistChoice):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -528,17 +531,18 @@ class SCCC(OffsetKinematics, TwistChoice):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         cos_heading = heading_along/heading_length
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_length
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        wrist_y = y - link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
@@ -549,9 +553,9 @@ class SCCC(OffsetKinematics, TwistChoice):
                 - link_length_1_plus_link_length_2 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
-        # a1: linear pair in the x and y equations; its reference where it is free
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
@@ -562,9 +566,9 @@ class SCCC(OffsetKinematics, TwistChoice):
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
@@ -576,9 +580,10 @@ class SCCC(OffsetKinematics, TwistChoice):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
-            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2/DEGREE  # A2: where its turn is open
+            # A2: without a commanded turn, the value nearest to this
+            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2/DEGREE
             near_a2 = open_a2
-        axis_a2 = part_of_axis_a2 + angle_a2/DEGREE  # A2: its turn
+        axis_a2 = part_of_axis_a2 + angle_a2/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
@@ -589,7 +594,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            # A3: where its turn is open
+            # A3: without a commanded turn, the value nearest to this
             if single_a3:
                 open_a3 = mid_a3
             else:
@@ -597,7 +602,7 @@ class SCCC(OffsetKinematics, TwistChoice):
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
                 open_a3 = offset_a3 + (free_a3 - part_of_axis_a3)/DEGREE
             near_a3 = open_a3
-        # a3: what the sum a123 leaves; A3: its turn
+        # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2 - part_of_axis_a3)/DEGREE
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
@@ -718,7 +723,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         coupling_12 = k.coupling_12
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -745,7 +750,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         part_of_constant = k.part_of_constant
         part_of_constant_2 = k.part_of_constant_2
         part_of_constant_3 = k.part_of_constant_3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -795,7 +800,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         part_of_constant = k.part_of_constant
         part_of_constant_2 = k.part_of_constant_2
         part_of_constant_3 = k.part_of_constant_3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -829,7 +834,8 @@ class SCCC(OffsetKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -866,7 +872,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         part_of_open_a2 = k.part_of_open_a2
         single_a1 = k.single_a1
         single_a2 = k.single_a2
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
@@ -884,23 +890,25 @@ class SCCC(OffsetKinematics, TwistChoice):
         cos_a3 = cos(free_a3)
         sin_a3 = sin(free_a3)
         link_length_3_plus_point_x = link_length_3 + point_x
-        # the point seen from the last moving joint
+        # commanded point, in the frame of the last moving joint
         tool_x = link_length_2 + link_length_3_plus_point_x*cos_a3 - point_y*sin_a3
-        tool_y = point_y*cos_a3 + link_length_3_plus_point_x*sin_a3  # the point seen from the last moving joint
-        effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
+        # commanded point, in the frame of the last moving joint
+        tool_y = point_y*cos_a3 + link_length_3_plus_point_x*sin_a3
+        effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach)*(effective_a2 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2)*(effective_a2 - link_length_1_minus_reach)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
@@ -909,11 +917,12 @@ class SCCC(OffsetKinematics, TwistChoice):
                 - effective_a2 - link_length_1 - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (tool_x*cos_swing_a2 + tool_y*sin_swing_a2)/effective_a2
         sin_a2 = (tool_x*sin_swing_a2 - tool_y*cos_swing_a2)/effective_a2
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
             arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
@@ -922,9 +931,9 @@ class SCCC(OffsetKinematics, TwistChoice):
         else:
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
@@ -933,9 +942,10 @@ class SCCC(OffsetKinematics, TwistChoice):
             near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2)
         else:
             free_a2 = ref_motor_a2 + coupling_12*free_a1
-            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2/DEGREE  # A2: where its turn is open
+            # A2: without a commanded turn, the value nearest to this
+            open_a2 = mid_a2 if single_a2 else part_of_axis_a2 + free_a2/DEGREE
             near_a2 = open_a2
-        axis_a2 = part_of_axis_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = part_of_axis_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
@@ -956,7 +966,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9
             and -1e9 <= axis_a3 <= 1e9
@@ -972,9 +982,10 @@ class SCCC(OffsetKinematics, TwistChoice):
         sin_a3 = sin(a3)
         cos_a3 = cos(a3)
         link_length_3_plus_point_x = link_length_3 + point_x
-        # the point seen from the last moving joint
+        # commanded point, in the frame of the last moving joint
         tool_x = link_length_2 + link_length_3_plus_point_x*cos_a3 - point_y*sin_a3
-        tool_y = point_y*cos_a3 + link_length_3_plus_point_x*sin_a3  # the point seen from the last moving joint
+        # commanded point, in the frame of the last moving joint
+        tool_y = point_y*cos_a3 + link_length_3_plus_point_x*sin_a3
         branch_elbow = (tool_y*cos_a2 + tool_x*sin_a2)/machine_scale
         return (branch_elbow,)
 

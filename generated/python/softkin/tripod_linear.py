@@ -109,16 +109,16 @@ class Constants(NamedTuple):
     sin_rail_angle_times_half_by_arm_length: float
     cos_rail_angle_by_arm_length: float
     part_of_branch_carriage_2: float
-    part_of_root_square_a1: float
+    part_of_radicand_a1: float
     cos_rail_angle_squared: float
-    part_of_root_square_a2: float
-    part_of_root_square_a2_2: float
+    part_of_radicand_a2: float
+    part_of_radicand_a2_2: float
     cos_rail_angle_times_sin_rail_angle: float
     sin_rail_angle_squared_times_1_by_4: float
     part_of_type2_rods_coplanar: float
     root_of_3_times_half_by_arm_length: float
     one_minus_sin_rail_angle_squared: float
-    part_of_root_square_a2_3: float
+    part_of_radicand_a2_3: float
     part_of_margin_rods_coplanar: float
     part_of_determinant_divisor: float
     twice_sin_rail_angle: float
@@ -331,7 +331,7 @@ class TripodLinear(OffsetKinematics):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
@@ -339,7 +339,7 @@ class TripodLinear(OffsetKinematics):
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
@@ -347,17 +347,18 @@ class TripodLinear(OffsetKinematics):
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        machine_scale = arm_length + inner_radius + outer_radius  # a length of the machine
+        machine_scale = arm_length + inner_radius + outer_radius  # characteristic length of the machine
         tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
         sin_rail_angle = sin(DEGREE*rail_angle)
         cos_rail_angle = cos(DEGREE*rail_angle)
-        assembly_sign = -1.0 if tcp_below else 1.0  # assembly mode of this machine
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = -1.0 if tcp_below else 1.0
         sin_max_angle_ball_joint = sin(DEGREE*max_angle_ball_joint)
         part_of_normal_divisor = 1e-22*arm_length*arm_length*arm_length*arm_length
         arm_length_squared = arm_length*arm_length
@@ -375,16 +376,16 @@ class TripodLinear(OffsetKinematics):
         sin_rail_angle_times_half_by_arm_length = 0.5*sin_rail_angle/arm_length
         cos_rail_angle_by_arm_length = cos_rail_angle/arm_length
         part_of_branch_carriage_2 = 0.5*root_of_3*sin_rail_angle/arm_length
-        part_of_root_square_a1 = 2.0*cos_rail_angle*sin_rail_angle
+        part_of_radicand_a1 = 2.0*cos_rail_angle*sin_rail_angle
         cos_rail_angle_squared = cos_rail_angle*cos_rail_angle
-        part_of_root_square_a2 = root_of_3*cos_rail_angle*sin_rail_angle
-        part_of_root_square_a2_2 = 0.5*root_of_3*sin_rail_angle*sin_rail_angle
+        part_of_radicand_a2 = root_of_3*cos_rail_angle*sin_rail_angle
+        part_of_radicand_a2_2 = 0.5*root_of_3*sin_rail_angle*sin_rail_angle
         cos_rail_angle_times_sin_rail_angle = cos_rail_angle*sin_rail_angle
         sin_rail_angle_squared_times_1_by_4 = 0.25*sin_rail_angle*sin_rail_angle
         part_of_type2_rods_coplanar = assembly_sign/(arm_length*arm_length*arm_length)
         root_of_3_times_half_by_arm_length = 0.5*root_of_3/arm_length
         one_minus_sin_rail_angle_squared = 1.0 - sin_rail_angle*sin_rail_angle
-        part_of_root_square_a2_3 = 1.0 - 0.75*sin_rail_angle*sin_rail_angle
+        part_of_radicand_a2_3 = 1.0 - 0.75*sin_rail_angle*sin_rail_angle
         part_of_margin_rods_coplanar = arm_length*arm_length*arm_length
         part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
         twice_sin_rail_angle = 2.0*sin_rail_angle
@@ -407,16 +408,15 @@ class TripodLinear(OffsetKinematics):
             half_by_arm_length=half_by_arm_length, one_by_arm_length=one_by_arm_length,
             sin_rail_angle_times_half_by_arm_length=sin_rail_angle_times_half_by_arm_length,
             cos_rail_angle_by_arm_length=cos_rail_angle_by_arm_length,
-            part_of_branch_carriage_2=part_of_branch_carriage_2, part_of_root_square_a1=part_of_root_square_a1,
-            cos_rail_angle_squared=cos_rail_angle_squared, part_of_root_square_a2=part_of_root_square_a2,
-            part_of_root_square_a2_2=part_of_root_square_a2_2,
+            part_of_branch_carriage_2=part_of_branch_carriage_2, part_of_radicand_a1=part_of_radicand_a1,
+            cos_rail_angle_squared=cos_rail_angle_squared, part_of_radicand_a2=part_of_radicand_a2,
+            part_of_radicand_a2_2=part_of_radicand_a2_2,
             cos_rail_angle_times_sin_rail_angle=cos_rail_angle_times_sin_rail_angle,
             sin_rail_angle_squared_times_1_by_4=sin_rail_angle_squared_times_1_by_4,
             part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
             root_of_3_times_half_by_arm_length=root_of_3_times_half_by_arm_length,
             one_minus_sin_rail_angle_squared=one_minus_sin_rail_angle_squared,
-            part_of_root_square_a2_3=part_of_root_square_a2_3,
-            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
+            part_of_radicand_a2_3=part_of_radicand_a2_3, part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
             part_of_determinant_divisor=part_of_determinant_divisor, twice_sin_rail_angle=twice_sin_rail_angle,
             part_of_slope_1_by_x=part_of_slope_1_by_x,
         )
@@ -444,66 +444,77 @@ class TripodLinear(OffsetKinematics):
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2
         a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_1_z = -a1*cos_rail_angle
+        pivot_2_z = -a2*cos_rail_angle
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
+        pivot_3_z = -a3*cos_rail_angle
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + normal_y*rise
-        z = foot_z + pivot_1_z + normal_z*rise
-        span_1_x = x - inner_radius_minus_outer_radius  # rod 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        y = foot_y + height_by_normal*normal_y
+        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
         branch_carriage_1 = (a1 + z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
-        span_2_y = y - part_of_pivot_2_y_2  # rod 2
-        span_2_x = x - part_of_pivot_2_x  # rod 2
+        span_2_y = y - part_of_pivot_2_y_2
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         part_of_branch_carriage_2_2 = (
             span_2_x*sin_rail_angle_times_half_by_arm_length - z*cos_rail_angle_by_arm_length
         )
         branch_carriage_2 = a2*one_by_arm_length + part_of_branch_carriage_2*span_2_y - part_of_branch_carriage_2_2
-        span_3_y = part_of_pivot_2_y_2 + y  # rod 3
+        span_3_y = part_of_pivot_2_y_2 + y
         branch_carriage_3 = a3*one_by_arm_length - part_of_branch_carriage_2_2 - part_of_branch_carriage_2*span_3_y
         return (
             (x, y, z),
@@ -528,49 +539,59 @@ class TripodLinear(OffsetKinematics):
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2
         a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_1_z = -a1*cos_rail_angle
+        pivot_2_z = -a2*cos_rail_angle
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
+        pivot_3_z = -a3*cos_rail_angle
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
@@ -601,94 +622,88 @@ class TripodLinear(OffsetKinematics):
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
-        part_of_root_square_a1 = k.part_of_root_square_a1
-        part_of_root_square_a2 = k.part_of_root_square_a2
-        part_of_root_square_a2_2 = k.part_of_root_square_a2_2
-        part_of_root_square_a2_3 = k.part_of_root_square_a2_3
+        part_of_radicand_a1 = k.part_of_radicand_a1
+        part_of_radicand_a2 = k.part_of_radicand_a2
+        part_of_radicand_a2_2 = k.part_of_radicand_a2_2
+        part_of_radicand_a2_3 = k.part_of_radicand_a2_3
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
         sin_rail_angle = k.sin_rail_angle
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = x - inner_radius_minus_outer_radius  # rod 1
+        span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
         z_minus_cos_rail_angle_squared_times_z = z - z*cos_rail_angle_squared
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = (
-            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z - y*y
+        # quadratic equation for a1: rod 1
+        radicand_a1 = (
+            arm_length_squared + (part_of_radicand_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z - y*y
             - one_minus_sin_rail_angle_squared*span_1_x*span_1_x
         )
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding):
+        if not (radicand_a1 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    y*y + (z_minus_cos_rail_angle_squared_times_z - part_of_root_square_a1*span_1_x)*z
+                    y*y + (z_minus_cos_rail_angle_squared_times_z - part_of_radicand_a1*span_1_x)*z
                     + one_minus_sin_rail_angle_squared*span_1_x*span_1_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = x - part_of_pivot_2_x  # rod 2
-        span_2_y = y - part_of_pivot_2_y_2  # rod 2
-        part_of_root_square_a2_4 = (
-            z_minus_cos_rail_angle_squared_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle
-        )
-        part_of_root_square_a2_5 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = (
-            arm_length_squared + (-part_of_root_square_a2_5 - part_of_root_square_a2_2*span_2_y)*span_2_x
-            + (part_of_root_square_a2*span_2_y - part_of_root_square_a2_4)*z
-            - part_of_root_square_a2_3*span_2_y*span_2_y
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_pivot_2_y_2
+        part_of_radicand_a2_4 = z_minus_cos_rail_angle_squared_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle
+        part_of_radicand_a2_5 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
+        # quadratic equation for a2: rod 2
+        radicand_a2 = (
+            arm_length_squared + (-part_of_radicand_a2_5 - part_of_radicand_a2_2*span_2_y)*span_2_x
+            + (part_of_radicand_a2*span_2_y - part_of_radicand_a2_4)*z - part_of_radicand_a2_3*span_2_y*span_2_y
         )
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding):
+        if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (part_of_root_square_a2_5 + part_of_root_square_a2_2*span_2_y)*span_2_x
-                    + (part_of_root_square_a2_4 - part_of_root_square_a2*span_2_y)*z
-                    + part_of_root_square_a2_3*span_2_y*span_2_y
+                    (part_of_radicand_a2_5 + part_of_radicand_a2_2*span_2_y)*span_2_x
+                    + (part_of_radicand_a2_4 - part_of_radicand_a2*span_2_y)*z + part_of_radicand_a2_3*span_2_y*span_2_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_y = part_of_pivot_2_y_2 + y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = (
-            arm_length_squared + (part_of_root_square_a2_2*span_3_y - part_of_root_square_a2_5)*span_2_x
-            + (-part_of_root_square_a2_4 - part_of_root_square_a2*span_3_y)*z
-            - part_of_root_square_a2_3*span_3_y*span_3_y
+        span_3_y = part_of_pivot_2_y_2 + y
+        # quadratic equation for a3: rod 3
+        radicand_a3 = (
+            arm_length_squared + (part_of_radicand_a2_2*span_3_y - part_of_radicand_a2_5)*span_2_x
+            + (-part_of_radicand_a2_4 - part_of_radicand_a2*span_3_y)*z - part_of_radicand_a2_3*span_3_y*span_3_y
         )
         # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding):
+        if not (radicand_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (part_of_root_square_a2_5 - part_of_root_square_a2_2*span_3_y)*span_2_x
-                    + (part_of_root_square_a2_4 + part_of_root_square_a2*span_3_y)*z
-                    + part_of_root_square_a2_3*span_3_y*span_3_y
+                    (part_of_radicand_a2_5 - part_of_radicand_a2_2*span_3_y)*span_2_x
+                    + (part_of_radicand_a2_4 + part_of_radicand_a2*span_3_y)*z + part_of_radicand_a2_3*span_3_y*span_3_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         cos_rail_angle_times_z = z*cos_rail_angle
         middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
-        a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
+        a1 = (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
         rod_1_x = span_1_x + a1*sin_rail_angle
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
+        pivot_1_z = -a1*cos_rail_angle
         rod_1_z = z - pivot_1_z
         part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle*span_2_x
         middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
-        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
+        a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
         rod_2_x = span_2_x - a2*half_sin_rail_angle
         rod_2_y = span_2_y + a2*part_of_pivot_2_y
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        pivot_2_z = -a2*cos_rail_angle
         rod_2_z = z - pivot_2_z
         middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
-        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
+        a3 = middle_a3 + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_x = span_2_x - a3*half_sin_rail_angle
         rod_3_y = span_3_y - a3*part_of_pivot_2_y
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        pivot_3_z = -a3*cos_rail_angle
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
             part_of_type2_rods_coplanar
@@ -812,64 +827,75 @@ class TripodLinear(OffsetKinematics):
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2
         a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_1_z = -a1*cos_rail_angle
+        pivot_2_z = -a2*cos_rail_angle
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
+        pivot_3_z = -a3*cos_rail_angle
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        z = foot_z + pivot_1_z + normal_z*rise
-        x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = x - inner_radius_minus_outer_radius  # rod 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
         margin_square_1 = (a1 + z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
-        y = foot_y + normal_y*rise
-        span_2_y = y - part_of_pivot_2_y_2  # rod 2
-        span_2_x = x - part_of_pivot_2_x  # rod 2
+        y = foot_y + height_by_normal*normal_y
+        span_2_y = y - part_of_pivot_2_y_2
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         part_of_margin_square_2 = span_2_x*sin_rail_angle_times_half_by_arm_length - z*cos_rail_angle_by_arm_length
         margin_square_2 = a2*one_by_arm_length + part_of_branch_carriage_2*span_2_y - part_of_margin_square_2
-        span_3_y = part_of_pivot_2_y_2 + y  # rod 3
+        span_3_y = part_of_pivot_2_y_2 + y
         margin_square_3 = a3*one_by_arm_length - part_of_margin_square_2 - part_of_branch_carriage_2*span_3_y
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
@@ -913,60 +939,71 @@ class TripodLinear(OffsetKinematics):
         sin_rail_angle_times_root_of_3 = k.sin_rail_angle_times_root_of_3
         twice_cos_rail_angle = k.twice_cos_rail_angle
         twice_sin_rail_angle = k.twice_sin_rail_angle
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2
         a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_1_z = -a1*cos_rail_angle
+        pivot_2_z = -a2*cos_rail_angle
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
+        pivot_3_z = -a3*cos_rail_angle
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
         twice_x = 2.0*x
         slope_1_by_x = twice_x + a1*twice_sin_rail_angle - part_of_slope_1_by_x
-        y = foot_y + normal_y*rise
+        y = foot_y + height_by_normal*normal_y
         slope_1_by_y = 2.0*y
-        z = foot_z + pivot_1_z + normal_z*rise
+        z = foot_z + pivot_1_z + height_by_normal*normal_z
         twice_z = 2.0*z
         slope_1_by_z = twice_z + a1*twice_cos_rail_angle
         a2_times_sin_rail_angle = a2*sin_rail_angle
@@ -984,7 +1021,7 @@ class TripodLinear(OffsetKinematics):
         slope_3_by_x = part_of_slope_2_by_x - a3_times_sin_rail_angle
         part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
         part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
-        # of the closure by the position: zero in a type 2 singularity
+        # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
             part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
         )
@@ -1051,98 +1088,98 @@ class TripodLinear(OffsetKinematics):
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
-        part_of_root_square_a1 = k.part_of_root_square_a1
-        part_of_root_square_a2 = k.part_of_root_square_a2
-        part_of_root_square_a2_2 = k.part_of_root_square_a2_2
-        part_of_root_square_a2_3 = k.part_of_root_square_a2_3
+        part_of_radicand_a1 = k.part_of_radicand_a1
+        part_of_radicand_a2 = k.part_of_radicand_a2
+        part_of_radicand_a2_2 = k.part_of_radicand_a2_2
+        part_of_radicand_a2_3 = k.part_of_radicand_a2_3
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
         sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
         sin_rail_angle = k.sin_rail_angle
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        flange_y = y - point_y  # the flange behind the point
-        flange_z = z - point_z  # the flange behind the point
-        flange_x = x - point_x  # the flange behind the point
-        span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1
-        part_of_root_square_a1_2 = flange_z - flange_z*cos_rail_angle_squared
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = (
-            arm_length_squared + flange_z*(part_of_root_square_a1*span_1_x - part_of_root_square_a1_2)
-            - flange_y*flange_y - one_minus_sin_rail_angle_squared*span_1_x*span_1_x
+        flange_y = y - point_y  # position of the flange: the point less its offset
+        flange_z = z - point_z  # position of the flange: the point less its offset
+        flange_x = x - point_x  # position of the flange: the point less its offset
+        span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
+        part_of_radicand_a1_2 = flange_z - flange_z*cos_rail_angle_squared
+        # quadratic equation for a1: rod 1
+        radicand_a1 = (
+            arm_length_squared + flange_z*(part_of_radicand_a1*span_1_x - part_of_radicand_a1_2) - flange_y*flange_y
+            - one_minus_sin_rail_angle_squared*span_1_x*span_1_x
         )
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding):
+        if not (radicand_a1 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    flange_y*flange_y + (part_of_root_square_a1_2 - part_of_root_square_a1*span_1_x)*flange_z
+                    flange_y*flange_y + (part_of_radicand_a1_2 - part_of_radicand_a1*span_1_x)*flange_z
                     + one_minus_sin_rail_angle_squared*span_1_x*span_1_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
-        span_2_y = flange_y - part_of_pivot_2_y_2  # rod 2
-        part_of_root_square_a2_4 = part_of_root_square_a1_2 + span_2_x*cos_rail_angle_times_sin_rail_angle
-        part_of_root_square_a2_5 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = (
-            arm_length_squared + flange_z*(part_of_root_square_a2*span_2_y - part_of_root_square_a2_4)
-            + (-part_of_root_square_a2_5 - part_of_root_square_a2_2*span_2_y)*span_2_x
-            - part_of_root_square_a2_3*span_2_y*span_2_y
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = flange_y - part_of_pivot_2_y_2
+        part_of_radicand_a2_4 = part_of_radicand_a1_2 + span_2_x*cos_rail_angle_times_sin_rail_angle
+        part_of_radicand_a2_5 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
+        # quadratic equation for a2: rod 2
+        radicand_a2 = (
+            arm_length_squared + flange_z*(part_of_radicand_a2*span_2_y - part_of_radicand_a2_4)
+            + (-part_of_radicand_a2_5 - part_of_radicand_a2_2*span_2_y)*span_2_x
+            - part_of_radicand_a2_3*span_2_y*span_2_y
         )
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding):
+        if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (part_of_root_square_a2_4 - part_of_root_square_a2*span_2_y)*flange_z
-                    + (part_of_root_square_a2_5 + part_of_root_square_a2_2*span_2_y)*span_2_x
-                    + part_of_root_square_a2_3*span_2_y*span_2_y
+                    (part_of_radicand_a2_4 - part_of_radicand_a2*span_2_y)*flange_z
+                    + (part_of_radicand_a2_5 + part_of_radicand_a2_2*span_2_y)*span_2_x
+                    + part_of_radicand_a2_3*span_2_y*span_2_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_y = flange_y + part_of_pivot_2_y_2  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = (
-            arm_length_squared + (-part_of_root_square_a2_4 - part_of_root_square_a2*span_3_y)*flange_z
-            + (part_of_root_square_a2_2*span_3_y - part_of_root_square_a2_5)*span_2_x
-            - part_of_root_square_a2_3*span_3_y*span_3_y
+        span_3_y = flange_y + part_of_pivot_2_y_2
+        # quadratic equation for a3: rod 3
+        radicand_a3 = (
+            arm_length_squared + (-part_of_radicand_a2_4 - part_of_radicand_a2*span_3_y)*flange_z
+            + (part_of_radicand_a2_2*span_3_y - part_of_radicand_a2_5)*span_2_x
+            - part_of_radicand_a2_3*span_3_y*span_3_y
         )
         # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding):
+        if not (radicand_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    flange_z*(part_of_root_square_a2_4 + part_of_root_square_a2*span_3_y)
-                    + (part_of_root_square_a2_5 - part_of_root_square_a2_2*span_3_y)*span_2_x
-                    + part_of_root_square_a2_3*span_3_y*span_3_y
+                    flange_z*(part_of_radicand_a2_4 + part_of_radicand_a2*span_3_y)
+                    + (part_of_radicand_a2_5 - part_of_radicand_a2_2*span_3_y)*span_2_x
+                    + part_of_radicand_a2_3*span_3_y*span_3_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         cos_rail_angle_times_flange_z = flange_z*cos_rail_angle
         middle_a1 = cos_rail_angle_times_flange_z + span_1_x*sin_rail_angle
-        a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
+        a1 = (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
         rod_1_x = span_1_x + a1*sin_rail_angle
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
+        pivot_1_z = -a1*cos_rail_angle
         rod_1_z = flange_z - pivot_1_z
         part_of_middle_a2 = cos_rail_angle_times_flange_z - half_sin_rail_angle*span_2_x
         middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
-        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
+        a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
         rod_2_x = span_2_x - a2*half_sin_rail_angle
         rod_2_y = span_2_y + a2*part_of_pivot_2_y
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        pivot_2_z = -a2*cos_rail_angle
         rod_2_z = flange_z - pivot_2_z
         middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
-        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
+        a3 = middle_a3 + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_x = span_2_x - a3*half_sin_rail_angle
         rod_3_y = span_3_y - a3*part_of_pivot_2_y
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        pivot_3_z = -a3*cos_rail_angle
         rod_3_z = flange_z - pivot_3_z
         type2_rods_coplanar = (
             (
@@ -1244,66 +1281,77 @@ class TripodLinear(OffsetKinematics):
         part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
+        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2
         a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_1_z = -a1*cos_rail_angle
+        pivot_2_z = -a2*cos_rail_angle
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
+        pivot_3_z = -a3*cos_rail_angle
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        flange_z = foot_z + pivot_1_z + normal_z*rise
-        flange_x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        flange_z = foot_z + pivot_1_z + height_by_normal*normal_z
+        flange_x = foot_x + pivot_1_x + height_by_normal*normal_x
+        span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
         branch_carriage_1 = (a1 + flange_z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
-        flange_y = foot_y + normal_y*rise
-        span_2_y = flange_y - part_of_pivot_2_y_2  # rod 2
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
+        flange_y = foot_y + height_by_normal*normal_y
+        span_2_y = flange_y - part_of_pivot_2_y_2
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
         part_of_branch_carriage_2_2 = (
             span_2_x*sin_rail_angle_times_half_by_arm_length - flange_z*cos_rail_angle_by_arm_length
         )
         branch_carriage_2 = a2*one_by_arm_length + part_of_branch_carriage_2*span_2_y - part_of_branch_carriage_2_2
-        span_3_y = flange_y + part_of_pivot_2_y_2  # rod 3
+        span_3_y = flange_y + part_of_pivot_2_y_2
         branch_carriage_3 = a3*one_by_arm_length - part_of_branch_carriage_2_2 - part_of_branch_carriage_2*span_3_y
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
 

@@ -347,47 +347,48 @@ class TripodRotary(OffsetKinematics):
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
+        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
         effective_lower_a1 = lower_a1
         effective_upper_a1 = upper_a1
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
+        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
         effective_lower_a2 = lower_a2
         effective_upper_a2 = upper_a2
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: no limit
+        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
         effective_lower_a3 = lower_a3
         effective_upper_a3 = upper_a3
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # one value inside the limits
+        # at most one turn is inside the limits
         single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
-        # a length of the machine
+        # characteristic length of the machine
         machine_scale = arm_1_radius + arm_length_1 + arm_length_2 + distance + stewart_radius
-        # a length of the machine
+        # a length made of parameters
         fixed_length_1 = 0.5*root(-(distance + 2.0*stewart_radius)*(distance - 2.0*stewart_radius))
-        # a length of the machine
+        # a length made of parameters
         fixed_length_2 = root(
             -(arm_1_radius + arm_length_1 + arm_length_2 - fixed_length_1)
             *(arm_1_radius + arm_length_1 - arm_length_2 - fixed_length_1)
         )
-        assembly_sign = 1.0 if tcp_above else -1.0  # assembly mode of this machine
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = 1.0 if tcp_above else -1.0
         sin_max_angle_ball_joint = sin(DEGREE*max_angle_ball_joint)
         part_of_normal_divisor = 1e-22*arm_length_2*arm_length_2*arm_length_2*arm_length_2
         arm_length_2_squared = arm_length_2*arm_length_2
@@ -456,71 +457,82 @@ class TripodRotary(OffsetKinematics):
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + normal_y*rise
-        z = foot_z + pivot_1_z + normal_z*rise
-        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
-        span_1_z = z - fixed_length_2  # rod 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        y = foot_y + height_by_normal*normal_y
+        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_z = z - fixed_length_2
         branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
-        span_2_x = x - part_of_pivot_2_x  # rod 2
-        span_2_y = y - part_of_pivot_2_y  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
         branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
-        span_3_y = part_of_pivot_2_y + y  # rod 3
+        span_3_y = part_of_pivot_2_y + y
         branch_knee_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)*half_by_arm_length_2
         return (
             (x, y, z),
@@ -545,55 +557,65 @@ class TripodRotary(OffsetKinematics):
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
@@ -636,28 +658,29 @@ class TripodRotary(OffsetKinematics):
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         twice_arm_length_1 = k.twice_arm_length_1
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
-        span_1_z = z - fixed_length_2  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_z = z - fixed_length_2
+        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z)*z - part_of_scaled_cosine_a1
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
         twice_arm_length_1_times_effective_a1 = effective_a1*twice_arm_length_1
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
@@ -678,26 +701,27 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = x - part_of_pivot_2_x  # rod 2
-        span_2_y = y - part_of_pivot_2_y  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
         along_a2 = span_2_x - root_of_3_2*span_2_y
         across_a2 = 2.0*span_1_z
         across_a2_squared = across_a2*across_a2
-        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y)*y - part_of_scaled_cosine_a2
         arm_length_1_times_effective_a2 = arm_length_1*effective_a2
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
@@ -724,21 +748,22 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_y = part_of_pivot_2_y + y  # rod 3
+        span_3_y = part_of_pivot_2_y + y
         along_a3 = span_2_x + root_of_3_2*span_3_y
-        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
         arm_length_1_times_effective_a3 = arm_length_1*effective_a3
-        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        # law of cosines for a3: rod 3: 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
@@ -765,21 +790,24 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
         rod_1_x = span_1_x + arm_length_1*cos_a1
         sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         rod_1_z = span_1_z + arm_length_1*sin_a1
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
         rod_2_x = span_2_x - half_arm_length_1*cos_a2
         rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/effective_a2
         rod_2_z = span_1_z + arm_length_1*sin_a2
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
         rod_3_x = span_2_x - half_arm_length_1*cos_a3
         rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half*cos_a3
@@ -845,19 +873,19 @@ class TripodRotary(OffsetKinematics):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -928,71 +956,82 @@ class TripodRotary(OffsetKinematics):
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
-        z = foot_z + pivot_1_z + normal_z*rise
-        span_1_z = z - fixed_length_2  # rod 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        span_1_z = z - fixed_length_2
         margin_stretched_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
-        span_2_x = x - part_of_pivot_2_x  # rod 2
-        y = foot_y + normal_y*rise
-        span_2_y = y - part_of_pivot_2_y  # rod 2
+        span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
+        y = foot_y + height_by_normal*normal_y
+        span_2_y = y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
         margin_stretched_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
-        span_3_y = part_of_pivot_2_y + y  # rod 3
+        span_3_y = part_of_pivot_2_y + y
         margin_stretched_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)*half_by_arm_length_2
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
@@ -1035,69 +1074,80 @@ class TripodRotary(OffsetKinematics):
         part_of_pivot_2_y = k.part_of_pivot_2_y
         part_of_slope_1_by_x = k.part_of_slope_1_by_x
         twice_arm_length_1 = k.twice_arm_length_1
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         arm_length_1_times_sin_a1 = arm_length_1*sin_a1
-        pivot_1_z = fixed_length_2 - arm_length_1_times_sin_a1  # rod 1
+        pivot_1_z = fixed_length_2 - arm_length_1_times_sin_a1
         sin_a2 = sin(a2)
         arm_length_1_times_sin_a2 = arm_length_1*sin_a2
-        pivot_2_z = fixed_length_2 - arm_length_1_times_sin_a2  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
+        pivot_2_z = fixed_length_2 - arm_length_1_times_sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
         arm_length_1_times_sin_a3 = arm_length_1*sin_a3
-        pivot_3_z = fixed_length_2 - arm_length_1_times_sin_a3  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
+        pivot_3_z = fixed_length_2 - arm_length_1_times_sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
         twice_x = 2.0*x
         slope_1_by_x = twice_x + twice_arm_length_1*cos_a1 - part_of_slope_1_by_x
-        y = foot_y + normal_y*rise
+        y = foot_y + height_by_normal*normal_y
         slope_1_by_y = 2.0*y
-        z = foot_z + pivot_1_z + normal_z*rise
+        z = foot_z + pivot_1_z + height_by_normal*normal_z
         z_minus_fixed_length_2 = z - fixed_length_2
         twice_z_minus_fixed_length_2 = 2.0*z_minus_fixed_length_2
         slope_1_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1*sin_a1
@@ -1116,7 +1166,7 @@ class TripodRotary(OffsetKinematics):
         slope_3_by_x = part_of_slope_2_by_x - arm_length_1_times_cos_a3
         part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
         part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
-        # of the closure by the position: zero in a type 2 singularity
+        # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
             part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
         )
@@ -1197,34 +1247,35 @@ class TripodRotary(OffsetKinematics):
         single_a2 = k.single_a2
         single_a3 = k.single_a3
         twice_arm_length_1 = k.twice_arm_length_1
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
             and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
             and -1e9 <= ref_a3 <= 1e9
         ):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        flange_x = x - point_x  # the flange behind the point
-        span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1
-        flange_z = z - point_z  # the flange behind the point
-        span_1_z = flange_z - fixed_length_2  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        flange_x = x - point_x  # position of the flange: the point less its offset
+        span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        flange_z = z - point_z  # position of the flange: the point less its offset
+        span_1_z = flange_z - fixed_length_2
+        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        flange_y = y - point_y  # the flange behind the point
+        flange_y = y - point_y  # position of the flange: the point less its offset
         part_of_scaled_cosine_a1_2 = part_of_scaled_cosine_a1 + (span_1_z - fixed_length_2)*flange_z
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a1 = (
             (fixed_length_1_minus_arm_1_radius - span_1_x)*flange_x - part_of_scaled_cosine_a1_2 - flange_y*flange_y
         )
         twice_arm_length_1_times_effective_a1 = effective_a1*twice_arm_length_1
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
@@ -1245,26 +1296,27 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
-        span_2_y = flange_y - part_of_pivot_2_y  # rod 2
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = flange_y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
         along_a2 = span_2_x - root_of_3_2*span_2_y
         across_a2 = 2.0*span_1_z
         across_a2_squared = across_a2*across_a2
-        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         part_of_scaled_cosine_a2 = flange_x*(part_of_pivot_2_x - span_2_x) - part_of_scaled_cosine_a1_2
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y)*flange_y - part_of_scaled_cosine_a2
         arm_length_1_times_effective_a2 = arm_length_1*effective_a2
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
@@ -1291,21 +1343,22 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        span_3_y = flange_y + part_of_pivot_2_y  # rod 3
+        span_3_y = flange_y + part_of_pivot_2_y
         along_a3 = span_2_x + root_of_3_2*span_3_y
-        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a3 = flange_y*(part_of_pivot_2_y + span_3_y) - part_of_scaled_cosine_a2
         arm_length_1_times_effective_a3 = arm_length_1*effective_a3
-        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        # law of cosines for a3: rod 3: 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
@@ -1332,21 +1385,24 @@ class TripodRotary(OffsetKinematics):
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
         rod_1_x = span_1_x + arm_length_1*cos_a1
         sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
         rod_1_z = span_1_z + arm_length_1*sin_a1
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
         rod_2_x = span_2_x - half_arm_length_1*cos_a2
         rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half*cos_a2
         sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/effective_a2
         rod_2_z = span_1_z + arm_length_1*sin_a2
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
         rod_3_x = span_2_x - half_arm_length_1*cos_a3
         rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half*cos_a3
@@ -1428,19 +1484,19 @@ class TripodRotary(OffsetKinematics):
                 /DEGREE
             )
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
         near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -1465,71 +1521,82 @@ class TripodRotary(OffsetKinematics):
         part_of_normal_divisor = k.part_of_normal_divisor
         part_of_pivot_2_x = k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
+        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         one_by_normal_square = 1.0/normal_square
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        flange_x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1
-        flange_z = foot_z + pivot_1_z + normal_z*rise
-        span_1_z = flange_z - fixed_length_2  # rod 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        flange_x = foot_x + pivot_1_x + height_by_normal*normal_x
+        span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        flange_z = foot_z + pivot_1_z + height_by_normal*normal_z
+        span_1_z = flange_z - fixed_length_2
         branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
-        span_2_x = flange_x - part_of_pivot_2_x  # rod 2
-        flange_y = foot_y + normal_y*rise
-        span_2_y = flange_y - part_of_pivot_2_y  # rod 2
+        span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
+        flange_y = foot_y + height_by_normal*normal_y
+        span_2_y = flange_y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
         branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
-        span_3_y = flange_y + part_of_pivot_2_y  # rod 3
+        span_3_y = flange_y + part_of_pivot_2_y
         branch_knee_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)*half_by_arm_length_2
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 

@@ -25,7 +25,8 @@ from derive.ir.symbols import (
     ROTATION_ENTRIES,
     real,
 )
-from derive.optimize.control_flow import Arms, in_arms
+from derive.ir.tree import If
+from derive.lowering.scheduling import scheduled
 from derive.optimize.rotation_identities import shorter_columns
 
 R = sp.Matrix(3, 3, ROTATION_ENTRIES)
@@ -94,8 +95,8 @@ def test_what_follows_from_a_condition_is_decided_with_it() -> None:
         Let(MADE_X, Select(known, T + 1, A + B)),
         Let(MADE_Y, Select(known, U + 1, A - B)),
     ]
-    (arms,) = in_arms(body, [MADE_X, MADE_Y])
-    assert isinstance(arms, Arms) and arms.condition == REGULAR
-    (inner,) = (item for item in arms.holds if isinstance(item, Arms))
+    (arms,) = scheduled(body, [MADE_X, MADE_Y])
+    assert isinstance(arms, If) and arms.condition == REGULAR
+    (inner,) = (item for item in arms.holds if isinstance(item, If))
     assert inner.condition == known and inner.holds == (Let(MADE_X, T + 1), Let(MADE_Y, U + 1))
-    assert not any(isinstance(item, Arms) for item in (*arms.fails, *inner.fails))
+    assert not any(isinstance(item, If) for item in (*arms.fails, *inner.fails))

@@ -18,7 +18,7 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     real,
 )
-from derive.optimize.control_flow import Arms
+from derive.ir.tree import If
 from derive.optimize.guards import PositiveRoot, guarded
 
 A, B, D, R, S, X, Y = (real(n) for n in "abdrsxy")
@@ -34,7 +34,7 @@ def asked(bound: sp.Expr) -> Require:
 def test_where_the_root_is_positive_it_is_not_asked(bound: sp.Expr) -> None:
     square, choice, last = guarded([SQUARE, asked(bound), ROOT, Let(B, A + 1)])
     assert square == SQUARE and last == Let(B, A + 1)
-    assert choice == Arms(sp.Gt(S, 0), (Let(A, R * PositiveRoot(S)),), (asked(bound), Let(A, sp.Integer(0))), (A,))
+    assert choice == If(sp.Gt(S, 0), (Let(A, R * PositiveRoot(S)),), (asked(bound), Let(A, sp.Integer(0))), (A,))
 
 
 @pytest.mark.parametrize("bound", [sp.Float("1e-12"), -D, D**2, -(D**3), Y - D**2])
@@ -45,14 +45,14 @@ def test_a_bound_that_may_be_positive_is_always_asked(bound: sp.Expr) -> None:
 
 def test_what_is_known_of_a_constant_decides() -> None:
     body = (SQUARE, asked(-D), ROOT)
-    assert isinstance(guarded(body, [Let(D, Y**2)])[1], Arms) and guarded(body, [Let(D, Y**3)]) == body
+    assert isinstance(guarded(body, [Let(D, Y**2)])[1], If) and guarded(body, [Let(D, Y**3)]) == body
 
 
 def test_a_root_that_is_known_later_is_not_taken_before_the_condition() -> None:
     body = (SQUARE, asked(sp.Integer(-1)), Let(B, sp.sin(X)), Let(A, B * Root(S)))
     assert guarded(body) == body
     between = (SQUARE, asked(sp.Integer(-1)), Require(sp.Gt(X, 1), Status.UNREACHABLE), ROOT)
-    assert isinstance(guarded(between)[1], Arms) and guarded(between)[2] == between[2]
+    assert isinstance(guarded(between)[1], If) and guarded(between)[2] == between[2]
 
 
 def test_a_root_that_something_is_divided_by_is_taken_as_it_was() -> None:

@@ -19,7 +19,7 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     real,
 )
-from derive.optimize.control_flow import Arms
+from derive.ir.tree import If
 from derive.optimize.inline import LONGEST, Grouped, written_where_read
 
 A, B, C, D, E, F, R, X, Y, Z = (real(n) for n in "abcdefrxyz")
@@ -60,23 +60,23 @@ def test_a_choice_a_root_and_a_turn_keep_theirs() -> None:
 
 
 def test_read_once_on_each_side_of_a_choice() -> None:
-    choice = Arms(REGULAR, (Let(C, A + 1),), (Let(B, A * 2), Let(C, B - 1)), (C,))
+    choice = If(REGULAR, (Let(C, A + 1),), (Let(B, A * 2), Let(C, B - 1)), (C,))
     items, _ = written_where_read([Let(A, X * Y), choice], [C])
     (arms,) = items
-    assert isinstance(arms, Arms)
+    assert isinstance(arms, If)
     assert arms.holds == (Let(C, Grouped(X * Y) + 1),)
     assert arms.fails == (Let(C, Grouped(Grouped(X * Y) * 2) - 1),)
 
 
 def test_read_behind_a_choice_or_by_its_condition_too() -> None:
-    choice = Arms(sp.Gt(B, 1), (Let(C, A + 1),), (Let(C, A - 1),), (C,))
+    choice = If(sp.Gt(B, 1), (Let(C, A + 1),), (Let(C, A - 1),), (C,))
     body = (Let(A, X * Y), Let(B, X + Y), choice, Let(D, A + C))
     items, _ = written_where_read(body, [D])
     assert items == body[:3]
 
 
 def test_what_a_choice_binds_keeps_its_name() -> None:
-    choice = Arms(REGULAR, (Let(C, X),), (Let(C, Y + X),), (C,))
+    choice = If(REGULAR, (Let(C, X),), (Let(C, Y + X),), (C,))
     assert written_where_read([choice, Let(D, C + 1)], [D])[0] == (choice,)
 
 

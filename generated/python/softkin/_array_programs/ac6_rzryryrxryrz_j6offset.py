@@ -41,7 +41,7 @@ class ArrayPrograms(Programs):
         self.constants = constants
 
     def try_joint(self, given: Values, status: Codes) -> Values:
-        """What a trial leaves of the closure, its slope, and what may turn fast with the joint."""
+        """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
         (
             free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
             goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_elbow, wanted_shoulder,
@@ -49,21 +49,21 @@ class ArrayPrograms(Programs):
         k = self.constants
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # the point that the last joints turn about
+        # wrist centre: the point in which the last axes intersect
         wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r13
         wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r23
-        # q1: of the point from its axis
+        # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
         slope_wrist_x_tried = k.j6_offset_x*(goal_r12*cos_q6_tried + goal_r11*sin_q6_tried)
         slope_wrist_y_tried = k.j6_offset_x*(goal_r22*cos_q6_tried + goal_r21*sin_q6_tried)
 
         def elsewhere_cos_q1_tried(free_a1: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1, where it is free
+            chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
             return (cos_q1_tried, sin_q1_tried, 0.0, 0.0)
 
-        along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
+        along_q1_tried = wanted_shoulder*wrist_x_tried  # rotation by q1 that points the arm at the point
         slope_distance_q1_tried = select(
             distance_q1_tried > 0.0,
             (
@@ -83,28 +83,29 @@ class ArrayPrograms(Programs):
         slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)*one_by_distance_q1_tried
         slope_across_q1_tried = wanted_shoulder*slope_wrist_y_tried
         slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)*one_by_distance_q1_tried
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried = elsewhere(
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
             elsewhere_cos_q1_tried,
             (free_a1, freed, freed_angle),
         )
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - k.a1
         wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r33
-        wrist_z_from_q1_tried = wrist_z_tried - k.d1  # what the unknown links must span
+        wrist_z_from_q1_tried = wrist_z_tried - k.d1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
         part_of_one_less_cos_q3_tried = k.a2_plus_effective_q3_tried - reach_tried
         part_of_one_less_cos_q3_tried_2 = k.a2_plus_effective_q3_tried + reach_tried
-        # 1 - cosine, times the scale
+        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3_tried = part_of_one_less_cos_q3_tried*part_of_one_less_cos_q3_tried_2
         part_of_one_plus_cos_q3_tried = k.a2_minus_effective_q3_tried - reach_tried
         part_of_one_plus_cos_q3_tried_2 = k.a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried*part_of_one_plus_cos_q3_tried_2
-        # twice the scale, with the rounding of its parts
-        both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = k.j6_offset_x*(goal_r32*cos_q6_tried + goal_r31*sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried*cos_q1_tried + slope_wrist_y_tried*sin_q1_tried + slope_cos_q1_tried*wrist_x_tried
@@ -113,32 +114,36 @@ class ArrayPrograms(Programs):
         slope_reach_tried = select(
             reach_tried > 0.0,
             (
-                -(-slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried - slope_wrist_z_tried*wrist_z_from_q1_tried)
+                (slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried + slope_wrist_z_tried*wrist_z_from_q1_tried)
                 /select(reach_tried > 0.0, reach_tried, 1.0)
             ),
             0.0,
         )
         slope_one_less_cos_q3_tried = (
-            -(part_of_one_less_cos_q3_tried_2 - part_of_one_less_cos_q3_tried)*slope_reach_tried
+            (part_of_one_less_cos_q3_tried - part_of_one_less_cos_q3_tried_2)*slope_reach_tried
         )
         slope_one_plus_cos_q3_tried = (
-            -(part_of_one_plus_cos_q3_tried - part_of_one_plus_cos_q3_tried_2)*slope_reach_tried
+            (part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried)*slope_reach_tried
         )
-        slope_both_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-        holds = both_q3_tried > 0.0
-        sum_q3_tried = select(holds, both_q3_tried, 1.0)
-        slope_sum_q3_tried = select(holds, slope_both_q3_tried, 0.0)
-        one_by_both_q3_tried = 1.0/sum_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_both_q3_tried
+        slope_sum_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+        holds = sum_of_cos_q3_tried > 0.0
+        divisor_of_cos_q3_tried = select(holds, sum_of_cos_q3_tried, 1.0)
+        slope_divisor_of_cos_q3_tried = select(holds, slope_sum_of_cos_q3_tried, 0.0)
+        one_by_sum_of_cos_q3_tried = 1.0/divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_of_cos_q3_tried
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
-        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
+        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
-        sin_swing_q3_tried = 2.0*one_by_both_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
+        sin_swing_q3_tried = 2.0*one_by_sum_of_cos_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_tried = k.a3_by_effective_q3_tried*cos_swing_q3_tried + k.d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = k.a3_by_effective_q3_tried*sin_swing_q3_tried - k.d4_by_effective_q3_tried*cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
-            (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried - slope_sum_q3_tried*cos_swing_q3_tried)
-            *one_by_both_q3_tried
+            (
+                slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
+                - slope_divisor_of_cos_q3_tried*cos_swing_q3_tried
+            )
+            *one_by_sum_of_cos_q3_tried
         )
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
@@ -152,8 +157,8 @@ class ArrayPrograms(Programs):
             0.0,
         )
         slope_sin_swing_q3_tried = (
-            (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_sum_q3_tried*sin_swing_q3_tried)
-            *one_by_both_q3_tried
+            (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_divisor_of_cos_q3_tried*sin_swing_q3_tried)
+            *one_by_sum_of_cos_q3_tried
         )
         slope_cos_q3_tried = (
             k.a3_by_effective_q3_tried*slope_cos_swing_q3_tried + k.d4_by_effective_q3_tried*slope_sin_swing_q3_tried
@@ -163,14 +168,14 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_cos_q2_tried(free_a2: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2, where it is free
+            chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
             return (cos_q2_tried, sin_q2_tried, 0.0, 0.0)
 
         arm_along_q2_tried = k.a3*sin_q3_tried + k.d4*cos_q3_tried
         arm_across_q2_tried = k.a2 + k.a3*cos_q3_tried - k.d4*sin_q3_tried
-        # q2: linear pair in the x_from_q1 and z_from_q1 equations
+        # rotation by q2 that takes the arm to the point that it must reach
         along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
         across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
         part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
@@ -205,7 +210,7 @@ class ArrayPrograms(Programs):
         slope_sin_q2_tried = (
             (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)*one_by_root_of_length_q2_tried
         )
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
@@ -241,15 +246,15 @@ class ArrayPrograms(Programs):
             (r11_from_q123_tried + slope_r12_from_q123_tried)*cos_q6_tried
             + (slope_r11_from_q123_tried - r12_from_q123_tried)*sin_q6_tried
         )
-        guard = 1e-12 + sine_square_q3_tried/k.swing_scale_q3_tried_squared
-        slope_guard = slope_sine_square_q3_tried/k.swing_scale_q3_tried_squared
+        guard = 1.000000000001 - cos_swing_q3_tried*cos_swing_q3_tried
+        slope_guard = -2.0*slope_cos_swing_q3_tried*cos_swing_q3_tried
         return (
             -r12_from_q123_before_q6_tried, -slope_r12_from_q123_before_q6_tried, guard, slope_guard, cos_q1_tried,
             sin_q1_tried, cos_q2_tried, sin_q2_tried,
         )
 
     def finish_root(self, given: Values, status: Codes) -> Values:
-        """The joints at a root, improved by Newton's method, and whether they are wanted."""
+        """The joints at a root, improved by Newton's method, and whether they are on the branch."""
         (
             free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
             goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_crossing, wanted_elbow,
@@ -258,36 +263,37 @@ class ArrayPrograms(Programs):
         k = self.constants
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
-        # the point that the last joints turn about
+        # wrist centre: the point in which the last axes intersect
         wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r13
         wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r23
-        # q1: of the point from its axis
+        # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
 
         def elsewhere_cos_q1_tried(free_a1: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1, where it is free
+            chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
             return (cos_q1_tried, sin_q1_tried)
 
-        along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
+        along_q1_tried = wanted_shoulder*wrist_x_tried  # rotation by q1 that points the arm at the point
         length_q1_tried = select(distance_q1_tried > k.machine_scale_times_free_angle, distance_q1_tried, 1.0)
         cos_q1_tried = along_q1_tried/length_q1_tried
         across_q1_tried = wanted_shoulder*wrist_y_tried
         sin_q1_tried = across_q1_tried/length_q1_tried
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         cos_q1_tried, sin_q1_tried = elsewhere(
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried),
             elsewhere_cos_q1_tried,
             (free_a1, freed, freed_angle),
         )
-        # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - k.a1
         wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r33
-        wrist_z_from_q1_tried = wrist_z_tried - k.d1  # what the unknown links must span
+        wrist_z_from_q1_tried = wrist_z_tried - k.d1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
-        # 1 - cosine, times the scale
+        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3_tried = (
             (k.a2_plus_effective_q3_tried + reach_tried)*(k.a2_plus_effective_q3_tried - reach_tried)
         )
@@ -295,25 +301,26 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_tried = (
             (reach_tried - k.a2_minus_effective_q3_tried)*(k.a2_minus_effective_q3_tried + reach_tried)
         )
-        # twice the scale, with the rounding of its parts
-        both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        sum_q3_tried = select(both_q3_tried > 0.0, both_q3_tried, 1.0)
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/sum_q3_tried
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        divisor_of_cos_q3_tried = select(sum_of_cos_q3_tried > 0.0, sum_of_cos_q3_tried, 1.0)
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
         sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
-        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
-        sin_swing_q3_tried = 2.0*root(sine_square_q3_tried)*sign_elbow_tried/sum_q3_tried
+        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
+        sin_swing_q3_tried = 2.0*root(sine_square_q3_tried)*sign_elbow_tried/divisor_of_cos_q3_tried
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_q3_tried = k.a3_by_effective_q3_tried*cos_swing_q3_tried + k.d4_by_effective_q3_tried*sin_swing_q3_tried
         sin_q3_tried = k.a3_by_effective_q3_tried*sin_swing_q3_tried - k.d4_by_effective_q3_tried*cos_swing_q3_tried
 
         def elsewhere_cos_q2_tried(free_a2: Real, freed: Whole, freed_angle: Real) -> Reals:
-            chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2, where it is free
+            chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
             return (cos_q2_tried, sin_q2_tried)
 
         arm_along_q2_tried = k.a3*sin_q3_tried + k.d4*cos_q3_tried
         arm_across_q2_tried = k.a2 + k.a3*cos_q3_tried - k.d4*sin_q3_tried
-        # q2: linear pair in the x_from_q1 and z_from_q1 equations
+        # rotation by q2 that takes the arm to the point that it must reach
         along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
         across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
         part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
@@ -324,7 +331,7 @@ class ArrayPrograms(Programs):
         )
         cos_q2_tried = along_q2_tried/length_q2_tried
         sin_q2_tried = across_q2_tried/length_q2_tried
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried = elsewhere(
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried),
@@ -421,10 +428,10 @@ class ArrayPrograms(Programs):
             r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
             r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
             error_5 = (
-                -0.5
+                0.5
                 *(
-                    goal_r31*r11_at_q6 + goal_r32*r12_at_q6 + goal_r33*r13_at_q5 - goal_r11*r31_at_q6 - goal_r12*r32_at_q6
-                    - goal_r13*r33_at_q5
+                    goal_r11*r31_at_q6 + goal_r12*r32_at_q6 + goal_r13*r33_at_q5 - goal_r31*r11_at_q6 - goal_r32*r12_at_q6
+                    - goal_r33*r13_at_q5
                 )
             )
             error_6 = (
@@ -434,7 +441,7 @@ class ArrayPrograms(Programs):
                     - goal_r13*r23_at_q5
                 )
             )
-            # of the pose, in lengths of the machine and radians
+            # pose error, in characteristic lengths and radians
             error = sqrt(
                 error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4 + error_5*error_5 + error_6*error_6
             )
@@ -476,9 +483,9 @@ class ArrayPrograms(Programs):
             product_1_3 = (
                 rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5 + rate_1_6*rate_3_6
             )
-            rate_1_2_plus_rate_1_3 = -rate_1_2 - rate_1_3
-            product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 + rate_1_2_plus_rate_1_3*sin_q1
-            product_1_5 = r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6 - rate_1_2_plus_rate_1_3*cos_q1
+            rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
+            product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 - rate_1_2_plus_rate_1_3*sin_q1
+            product_1_5 = rate_1_2_plus_rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6
             product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23
             product_2_2 = (
                 1e-12 + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4 + rate_2_5*rate_2_5
@@ -487,9 +494,9 @@ class ArrayPrograms(Programs):
             product_2_3 = (
                 rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5 + rate_2_6*rate_3_6
             )
-            rate_2_2_plus_rate_2_3 = -rate_2_2 - rate_2_3
-            product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 + rate_2_2_plus_rate_2_3*sin_q1
-            product_2_5 = r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6 - rate_2_2_plus_rate_2_3*cos_q1
+            rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
+            product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 - rate_2_2_plus_rate_2_3*sin_q1
+            product_2_5 = rate_2_2_plus_rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6
             product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23
             product_3_3 = (
                 1e-12 + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5 + rate_3_6*rate_3_6
@@ -504,8 +511,8 @@ class ArrayPrograms(Programs):
             product_5_5 = 1e-12 + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4 + r23_at_q5*r23_at_q5
             product_5_6 = r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5 - r21_at_q23*sin_q23
             product_6_6 = 1.000000000001 + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23
-            # of the shortest step that lets the error vanish
-            _, share_1, share_2, share_3, share_4, share_5, share_6 = solve(
+            # damped least squares: the shortest step that cancels the error
+            _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
                     (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
@@ -516,21 +523,21 @@ class ArrayPrograms(Programs):
                 ),
                 ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
             )
-            step_q1 = share_6 + rate_1_1*share_1 + rate_2_1*share_2
-            part_of_step_q2 = share_5*cos_q1 - share_4*sin_q1
-            step_q2 = part_of_step_q2 + rate_1_2*share_1 + rate_2_2*share_2 + rate_3_2*share_3
-            step_q3 = part_of_step_q2 + rate_1_3*share_1 + rate_2_3*share_2 + rate_3_3*share_3
+            step_q1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1
+            part_of_step_q2 = multiplier_5*cos_q1 - multiplier_4*sin_q1
+            step_q2 = part_of_step_q2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2
+            step_q3 = part_of_step_q2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3
             step_q4 = (
-                r11_at_q23*share_4 + r21_at_q23*share_5 + rate_1_4*share_1 + rate_2_4*share_2 + rate_3_4*share_3
-                - share_6*sin_q23
+                multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4 + multiplier_4*r11_at_q23
+                + multiplier_5*r21_at_q23 - multiplier_6*sin_q23
             )
             step_q5 = (
-                r12_at_q4*share_4 + r22_at_q4*share_5 + r32_at_q4*share_6 + rate_1_5*share_1 + rate_2_5*share_2
-                + rate_3_5*share_3
+                multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5 + multiplier_4*r12_at_q4
+                + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4
             )
             step_q6 = (
-                r13_at_q5*share_4 + r23_at_q5*share_5 + r33_at_q5*share_6 + rate_1_6*share_1 + rate_2_6*share_2
-                + rate_3_6*share_3
+                multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6 + multiplier_4*r13_at_q5
+                + multiplier_5*r23_at_q5 + multiplier_6*r33_at_q5
             )
             size = (
                 step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4 + step_q5*step_q5 + step_q6*step_q6
@@ -553,7 +560,7 @@ class ArrayPrograms(Programs):
                 ),
             )
         require(status, done, Status.UNREACHABLE)
-        # of the Jacobian there, positions in lengths of the machine
+        # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
                 (rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6),
@@ -574,13 +581,13 @@ class ArrayPrograms(Programs):
         return (fits, q1, q2, q3, q4, q5, q6)
 
     def find_root(self, given: Values, status: Codes) -> Values:
-        """The joints at the root that is nearest to the start; zeros where none is looked for."""
+        """The joints at the root that is nearest to the start; zeros where the machine needs no scan."""
         (
             free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
             goal_r33, goal_x, goal_y, goal_z, looked_for, start, wanted_crossing, wanted_elbow, wanted_shoulder,
             wanted_wrist,
         ) = given
-        # the search along A6
+        # root scan along A6
         found = nearest_root(
             self.try_joint,
             self.finish_root,
@@ -606,7 +613,7 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -675,7 +682,7 @@ class ArrayPrograms(Programs):
         x_minus_x_at_q6 = x - x_at_q6
         cos_q1_times_one_by_machine_scale = k.one_by_machine_scale*cos_q1
         sin_q1_times_one_by_machine_scale = k.one_by_machine_scale*sin_q1
-        # of the Jacobian, its positions in lengths of the machine
+        # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
                 (
@@ -717,16 +724,16 @@ class ArrayPrograms(Programs):
         r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
         r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
         r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        wrist_x_closed = x - d6_times_r13_at_q5  # the point that the last joints turn about
+        wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the point in which the last axes intersect
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
-        margin_elbow_closed = (k.a3*sin_q3_closed + k.d4*cos_q3_closed)/k.effective_q3_tried
+        margin_elbow_closed = k.a3_by_effective_q3_tried*sin_q3_closed + k.d4_by_effective_q3_tried*cos_q3_closed
         branch_shoulder: Real
         branch_wrist: Real
         branch_crossing: Real
         if k.searched:
-            # the point that the last joints turn about
+            # wrist centre: the point in which the last axes intersect
             wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*k.j6_offset_x
             wrist_y_tried = wrist_y_closed + (r22_at_q6*sin_q6 - r21_at_q6*cos_q6)*k.j6_offset_x
             margin_shoulder_tried = k.one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)
@@ -765,7 +772,7 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -775,19 +782,20 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x_closed = x - k.d6*r13  # the point that the last joints turn about
+        wrist_x_closed = x - k.d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y_closed = y - k.d6*r23
-        # q1: of the point from its axis
+        # distance of the point from the axis of q1
         distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_closed = sigma_shoulder*distance_q1_closed
-        wrist_x_from_q1_closed = ahead_q1_closed - k.a1  # what the unknown links must span
+        wrist_x_from_q1_closed = ahead_q1_closed - k.a1  # coordinate of the point that the remaining links must reach
         wrist_z_closed = z - k.d6*r33
-        wrist_z_from_q1_closed = wrist_z_closed - k.d1  # what the unknown links must span
+        wrist_z_from_q1_closed = wrist_z_closed - k.d1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
         reach_closed = sqrt(
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
-        # 1 - cosine, times the scale
+        # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3_closed = (
             (k.a2_plus_effective_q3_tried + reach_closed)*(k.a2_plus_effective_q3_tried - reach_closed)
         )
@@ -795,15 +803,18 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_closed = (
             (reach_closed - k.a2_minus_effective_q3_tried)*(k.a2_minus_effective_q3_tried + reach_closed)
         )
-        sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+        divisor_of_cos_q3_closed = select(sum_of_cos_q3_closed > 0.0, sum_of_cos_q3_closed, 1.0)
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
         free_a1 = (ref_a1 - k.offset_a1)*DEGREE
         free_a2 = (ref_a2 - k.offset_a2)*DEGREE
         free_a6 = (ref_a6 - k.offset_a6)*DEGREE
         # q3: out of reach
-        require(status, k.searched | (sine_square_q3_closed >= -k.part_of_constant), Status.UNREACHABLE)
+        require(status, k.searched | (absolute(cos_swing_q3_closed) <= 1.0000000000005), Status.UNREACHABLE)
         # without the offset there is no second crossing
         require(status, k.searched | (sigma_crossing > 0), Status.UNREACHABLE)
-        # A6: where it meets what is left of the closure
+        # root scan along A6
         found = self.find_root(
             (
                 free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k.searched, free_a6,
@@ -832,11 +843,11 @@ class ArrayPrograms(Programs):
                 sin_q1_closed = sin(free_a1)
                 return (cos_q1_closed, sin_q1_closed)
 
-            along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
+            along_q1_closed = sigma_shoulder*wrist_x_closed  # rotation by q1 that points the arm at the point
             cos_q1_closed = along_q1_closed/distance_q1_closed
             across_q1_closed = sigma_shoulder*wrist_y_closed
             sin_q1_closed = across_q1_closed/distance_q1_closed
-            # its reference where it is free
+            # in the singularity: the angle of the reference
             cos_q1_closed, sin_q1_closed = elsewhere(
                 distance_q1_closed > k.machine_scale_times_free_angle,
                 (cos_q1_closed, sin_q1_closed),
@@ -844,11 +855,8 @@ class ArrayPrograms(Programs):
                 (free_a1,),
             )
             q1 = atan2(sin_q1_closed, cos_q1_closed)
-            # twice the scale, with the rounding of its parts
-            both_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-            sum_q3_closed = select(both_q3_closed > 0.0, both_q3_closed, 1.0)
-            sin_swing_q3_closed = 2.0*root(sine_square_q3_closed)*sigma_elbow/sum_q3_closed
-            cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/sum_q3_closed
+            sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # sine squared, times the squared scale
+            sin_swing_q3_closed = 2.0*root(sine_square_q3_closed)*sigma_elbow/divisor_of_cos_q3_closed
 
             def elsewhere_cos_q2_closed(free_a2: Real) -> Reals:
                 cos_q2_closed = cos(free_a2)
@@ -857,14 +865,14 @@ class ArrayPrograms(Programs):
 
             arm_along_q2_closed = k.effective_q3_tried*sin_swing_q3_closed
             arm_across_q2_closed = k.a2 + k.effective_q3_tried*cos_swing_q3_closed
-            # q2: linear pair in the x_from_q1 and z_from_q1 equations
+            # rotation by q2 that takes the arm to the point that it must reach
             along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
             across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
             part_of_length_q2_closed = across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed
             length_q2_closed = select(part_of_length_q2_closed > 0.0, root(part_of_length_q2_closed), 1.0)
             cos_q2_closed = along_q2_closed/length_q2_closed
             sin_q2_closed = across_q2_closed/length_q2_closed
-            # its reference where it is free
+            # in the singularity: the angle of the reference
             cos_q2_closed, sin_q2_closed = elsewhere(
                 reach_closed > k.machine_scale_times_free_angle,
                 (cos_q2_closed, sin_q2_closed),
@@ -872,6 +880,7 @@ class ArrayPrograms(Programs):
                 (free_a2,),
             )
             q2 = atan2(sin_q2_closed, cos_q2_closed)
+            # addition theorem: plus the angle of the direction from which it is measured
             cos_q3_closed = (
                 k.a3_by_effective_q3_tried*cos_swing_q3_closed + k.d4_by_effective_q3_tried*sin_swing_q3_closed
             )
@@ -884,7 +893,7 @@ class ArrayPrograms(Programs):
             cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
             r33_from_q123_closed = r33*cos_q23_closed + r13_from_q1_closed*sin_q23_closed
             r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
-            # q4: direction and distance of a point
+            # polar coordinates: the radius at angle q4
             radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
 
             def elsewhere_direction_x_q4_closed(ref_a4: Real) -> Reals:
@@ -895,7 +904,7 @@ class ArrayPrograms(Programs):
 
             direction_x_q4_closed = sigma_wrist*r33_from_q123_closed
             direction_y_q4_closed = -sigma_wrist*r23_from_q1_closed
-            # q4: polar angle in the r33 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_closed, direction_y_q4_closed = elsewhere(
                 radius_q4_closed > 1e-11,
                 (direction_x_q4_closed, direction_y_q4_closed),
@@ -919,24 +928,24 @@ class ArrayPrograms(Programs):
                 direction_x_q4_closed*r22_from_q1_closed + direction_y_q4_closed*r32_from_q123_closed
             )
             q6 = atan2(scaled_r21_from_q1234_closed, scaled_r22_from_q1234_closed)
-        open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(k.offset_a1 + q1/DEGREE, near_a1)  # A1: its turn
-        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: where its turn is open
+        axis_a1 = nearest_period(k.offset_a1 + q1/DEGREE, near_a1)  # A1: whole turns added
+        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(k.offset_a2 + q2/DEGREE, near_a2)  # A2: its turn
-        open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: where its turn is open
+        axis_a2 = nearest_period(k.offset_a2 + q2/DEGREE, near_a2)  # A2: whole turns added
+        open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(k.offset_a3 + q3/DEGREE, near_a3)  # A3: its turn
-        open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: where its turn is open
+        axis_a3 = nearest_period(k.offset_a3 + q3/DEGREE, near_a3)  # A3: whole turns added
+        open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        axis_a4 = nearest_period(k.offset_a4 + q4/DEGREE, near_a4)  # A4: its turn
-        open_a5 = select(k.single_a5, k.mid_a5, ref_a5)  # A5: where its turn is open
+        axis_a4 = nearest_period(k.offset_a4 + q4/DEGREE, near_a4)  # A4: whole turns added
+        open_a5 = select(k.single_a5, k.mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
         near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        axis_a5 = nearest_period(k.offset_a5 + q5/DEGREE, near_a5)  # A5: its turn
-        open_a6 = select(k.single_a6, k.mid_a6, ref_a6)  # A6: where its turn is open
+        axis_a5 = nearest_period(k.offset_a5 + q5/DEGREE, near_a5)  # A5: whole turns added
+        open_a6 = select(k.single_a6, k.mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
         near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
-        axis_a6 = nearest_period(k.offset_a6 + q6/DEGREE, near_a6)  # A6: its turn
+        axis_a6 = nearest_period(k.offset_a6 + q6/DEGREE, near_a6)  # A6: whole turns added
         # q6: the search along it finds no root of this branch
         require(status, found_ | (opposite(k.searched)), Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status

@@ -41,7 +41,7 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -85,8 +85,8 @@ class ArrayPrograms(Programs):
         y_at_q4 = y_at_q3 + k.a3*r21_at_q23
         y_at_q5 = y_at_q4 - k.d4*cos_q1
         y_at_q6 = y_at_q5 - k.d5*r22_at_q234
-        d6_times_r22_at_q5 = -k.d6*r22_at_q5
-        y = y_at_q6 - d6_times_r22_at_q5
+        d6_times_r22_at_q5 = k.d6*r22_at_q5
+        y = d6_times_r22_at_q5 + y_at_q6
         r32_at_q5 = -sin_q234*sin_q5
         sin_q2 = sin(q2)
         z_at_q3 = k.d1 + k.a2*sin_q2
@@ -106,8 +106,8 @@ class ArrayPrograms(Programs):
         r31_at_q5 = cos_q5*sin_q234
         r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6
         r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
-        wrist_y = d6_times_r22_at_q5 + y
+        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
+        wrist_y = y - d6_times_r22_at_q5
         branch_shoulder = (-wrist_x*cos_q1 - wrist_y*sin_q1)/k.machine_scale
         sin_q3 = sin(q3)
         return (
@@ -134,7 +134,7 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -144,12 +144,13 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - k.d6*r13  # the point that the last joints turn about
+        wrist_x = x - k.d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - k.d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - k.d4)*(k.d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - k.d4)*(k.d4 + distance_q1)
         distance_q1_squared = distance_q1*distance_q1
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = -root(ahead_squared_q1)*sigma_shoulder
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
@@ -160,7 +161,7 @@ class ArrayPrograms(Programs):
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - k.d4*wrist_y)/distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + k.d4*wrist_x)/distance_q1_squared
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > k.machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -178,7 +179,7 @@ class ArrayPrograms(Programs):
         ) -> Reals:
             free_a6 = (ref_a6 - k.offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
+            sin_of_free_a6 = sin(free_a6)
             r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
             r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
             radius_q6_before_q1_for_q3 = sqrt(
@@ -197,35 +198,33 @@ class ArrayPrograms(Programs):
                 r22_from_q1_before_q1_for_q3: Real, r22_from_q1_rate_q1_for_q3: Real, radius_q6_before_q1_for_q3: Real,
                 sin_of_free_a6: Real,
             ) -> Reals:
-                sin_q6_before_q1_for_q3 = -sin_of_free_a6
                 radius_q6_rate_q1_for_q3 = select(
                     radius_q6_before_q1_for_q3 > 0.0,
                     (
-                        -(
-                            -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                            - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                        (
+                            r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                            + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                         )
                         /radius_q6_before_q1_for_q3
                     ),
                     0.0,
                 )
-                return (cos_of_free_a6, sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3, 0.0, 0.0)
+                return (cos_of_free_a6, sin_of_free_a6, radius_q6_rate_q1_for_q3, 0.0, 0.0)
 
             along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
             one_by_radius_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
-            part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
-            cos_q6_before_q1_for_q3 = -part_of_cos_q6_before_q1_for_q3
+            part_of_cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
             across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
             part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
             radius_q6_rate_q1_for_q3 = (
-                -(
-                    -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                    - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                (
+                    r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                    + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
                 )
                 /radius_q6_before_q1_for_q3
             )
             cos_q6_rate_q1_for_q3 = (
-                (along_q6_rate_q1_for_q3 + part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
+                (along_q6_rate_q1_for_q3 - part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
                 *one_by_radius_q6_before_q1_for_q3
             )
             sin_q6_rate_q1_for_q3 = (
@@ -235,7 +234,7 @@ class ArrayPrograms(Programs):
             found = elsewhere(
                 radius_q6_before_q1_for_q3 > 1e-11,
                 (
-                    cos_q6_before_q1_for_q3, part_of_sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3,
+                    part_of_cos_q6_before_q1_for_q3, part_of_sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3,
                     cos_q6_rate_q1_for_q3, sin_q6_rate_q1_for_q3,
                 ),
                 elsewhere_cos_q6_before_q1_for_q3,
@@ -255,7 +254,7 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - k.d5*r21_from_q1_before_q56_before_q1_for_q3
             r22_from_q1_before_q6_before_q1_for_q3 = r32*cos_q6_before_q1_for_q3 + r31*sin_q6_before_q1_for_q3
             wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed + k.d5*r22_from_q1_before_q6_before_q1_for_q3
-            # a later step needs this of q1: no larger in size than
+            # q3 has solutions where this is within its bound
             value_q1_for_q3 = (
                 wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
                 + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - k.a2_squared_plus_a3_squared
@@ -281,7 +280,7 @@ class ArrayPrograms(Programs):
                 wrist_x_from_q1_rate_q1_for_q3 = -k.d4 - k.d5*r21_from_q1_before_q56_rate_q1_for_q3
                 r22_from_q1_before_q6_rate_q1_for_q3 = r32*cos_q6_rate_q1_for_q3 + r31*sin_q6_rate_q1_for_q3
                 wrist_y_from_q1_rate_q1_for_q3 = k.d5*r22_from_q1_before_q6_rate_q1_for_q3
-                # how it changes with q1
+                # its derivative by q1
                 rate_q1_for_q3 = (
                     2.0
                     *(
@@ -292,12 +291,12 @@ class ArrayPrograms(Programs):
                 excess_q1_for_q3 = select(
                     value_q1_for_q3 > 0.0, value_q1_for_q3 - k.size_q1_for_q3, k.size_q1_for_q3 + value_q1_for_q3,
                 )
-                # to the boundary of the later step
+                # turn of q1 to the bound, to first order
                 turn_q1_for_q3 = select(
                     absolute(rate_q1_for_q3) > k.size_q1_for_q3_times_rounding, -excess_q1_for_q3/rate_q1_for_q3, 1.0,
                 )
                 turn_q1_for_q3_squared = turn_q1_for_q3*turn_q1_for_q3
-                # whether it follows q6
+                # whether the first order is not enough: then q6 is chosen first
                 follows_q1_for_q3 = (
                     (turn_q1_for_q3_squared > 1e-12)
                     | (
@@ -318,7 +317,7 @@ class ArrayPrograms(Programs):
                     turned_sin_q1_for_q3 = (
                         one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
                     )
-                    # what is left of its own equation
+                    # residual of the equation of q1
                     turned_cost_q1_for_q3 = absolute(k.d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
                     turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - k.d4*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
                     return (turned_cost_q1_for_q3, turned_ahead_q1_for_q3, turned_cos_q1_for_q3, turned_sin_q1_for_q3)
@@ -344,7 +343,7 @@ class ArrayPrograms(Programs):
                     select(-part_of_lowest_q6_q1_for_q3 < -1.0, -1.0, -part_of_lowest_q6_q1_for_q3),
                 )
                 holds = swing_q6_q1_for_q3 > k.part_of_divisor_q6_q1_for_q3
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 highest_q6_q1_for_q3 = select(holds, highest_q6_q1_for_q3, 1.0)
                 lowest_q6_q1_for_q3 = select(holds, lowest_q6_q1_for_q3, -1.0)
                 near_q6_q1_for_q3 = atan2(
@@ -372,7 +371,7 @@ class ArrayPrograms(Programs):
                     sigma_wrist*(near_cos_q6_q1_for_q3*r21 - near_sin_q6_q1_for_q3*r22)*near_q_q1_for_q3
                     - (near_sin_q6_q1_for_q3*r12 - near_cos_q6_q1_for_q3*r11)*sigma_wrist*near_p_q1_for_q3
                 )
-                # of two opposite ways
+                # positive where the vector points along the later angle
                 near_towards_q1_for_q3 = select(
                     absolute(near_along_q1_for_q3) <= 5e-12*near_radius_q1_for_q3,
                     near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3, near_along_q1_for_q3,
@@ -382,12 +381,12 @@ class ArrayPrograms(Programs):
                 near_cos_q1_for_q3 = -near_q_q1_for_q3*part_of_near_cos_q1_for_q3
                 near_sin_q1_for_q3 = near_p_q1_for_q3*part_of_near_cos_q1_for_q3
                 holds = near_radius_q1_for_q3 > 1e-12
-                # the earlier angle follows
-                # it stays where every angle gives this one
+                # the earlier angle follows the later one
+                # it stays where every angle gives this later one
                 near_cos_q1_for_q3 = select(holds, near_cos_q1_for_q3, cos_q1_before_q1_for_q3)
                 near_sin_q1_for_q3 = select(holds, near_sin_q1_for_q3, sin_q1_before_q1_for_q3)
                 near_cost_q1_for_q3 = absolute(k.d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
-                mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
+                mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # mirror image: on the other arc
                 mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
                 mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
                 mirrored_q_q1_for_q3 = sigma_wrist*(mirrored_cos_q6_q1_for_q3*r12 + mirrored_sin_q6_q1_for_q3*r11)
@@ -399,7 +398,7 @@ class ArrayPrograms(Programs):
                     sigma_wrist*(mirrored_cos_q6_q1_for_q3*r21 - mirrored_sin_q6_q1_for_q3*r22)*mirrored_q_q1_for_q3
                     - (mirrored_sin_q6_q1_for_q3*r12 - mirrored_cos_q6_q1_for_q3*r11)*sigma_wrist*mirrored_p_q1_for_q3
                 )
-                # of two opposite ways
+                # positive where the vector points along the later angle
                 mirrored_towards_q1_for_q3 = select(
                     absolute(mirrored_along_q1_for_q3) <= 5e-12*mirrored_radius_q1_for_q3,
                     mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3,
@@ -410,8 +409,8 @@ class ArrayPrograms(Programs):
                 mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*part_of_mirrored_cos_q1_for_q3
                 mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*part_of_mirrored_cos_q1_for_q3
                 holds = mirrored_radius_q1_for_q3 > 1e-12
-                # the earlier angle follows
-                # it stays where every angle gives this one
+                # the earlier angle follows the later one
+                # it stays where every angle gives this later one
                 mirrored_cos_q1_for_q3 = select(holds, mirrored_cos_q1_for_q3, cos_q1_before_q1_for_q3)
                 mirrored_sin_q1_for_q3 = select(holds, mirrored_sin_q1_for_q3, sin_q1_before_q1_for_q3)
                 mirrored_cost_q1_for_q3 = absolute(k.d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
@@ -434,13 +433,13 @@ class ArrayPrograms(Programs):
                     ),
                 )
                 holds = best_cost_q1_for_q3 > k.machine_scale_times_rounding
-                # turned within rounding, where the rest can be reached
+                # turned, within rounding, to where q3 has a solution
                 ahead_q1 = select(holds, ahead_q1_before_q1_for_q3, best_ahead_q1_for_q3)
                 cos_q1 = select(holds, cos_q1_before_q1_for_q3, best_cos_q1_for_q3)
                 sin_q1 = select(holds, sin_q1_before_q1_for_q3, best_sin_q1_for_q3)
                 return (ahead_q1, cos_q1, sin_q1)
 
-            # turned within rounding, where the rest can be reached
+            # turned, within rounding, to where q3 has a solution
             ahead_q1, cos_q1, sin_q1 = elsewhere(
                 absolute(value_q1_for_q3) <= k.size_q1_for_q3,
                 (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -456,7 +455,7 @@ class ArrayPrograms(Programs):
             )
             return (ahead_q1, cos_q1, sin_q1)
 
-        # turned within rounding, where the rest can be reached
+        # turned, within rounding, to where q3 has a solution
         ahead_q1, cos_q1, sin_q1 = elsewhere(
             ahead_squared_q1 > k.machine_scale_squared_times_plane,
             (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -467,25 +466,25 @@ class ArrayPrograms(Programs):
                 wrist_z,
             ),
         )
-        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
+        cos_q5 = r13*sin_q1 - r23*cos_q1  # cosine and sine of q5 from the q6 radius and r32 equations
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
-        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)
         q6_radius_of_q5 = sigma_wrist*radius_q6
         q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33
 
         def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - k.offset_a6)*DEGREE
             cos_of_free_a6 = cos(free_a6)
-            sin_of_free_a6 = -sin(free_a6)
-            sin_q6_before_q6_of_q3 = -sin_of_free_a6
-            return (cos_of_free_a6, sin_q6_before_q6_of_q3)
+            sin_of_free_a6 = sin(free_a6)
+            return (cos_of_free_a6, sin_of_free_a6)
 
-        along_q6 = -sigma_wrist*r21_from_q1  # q6: polar angle in the r31 and r32 equations
+        along_q6 = -sigma_wrist*r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
         cos_q6_before_q6_of_q3 = along_q6/radius_q6
         across_q6 = sigma_wrist*r22_from_q1
         sin_q6_before_q6_of_q3 = across_q6/radius_q6
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
             radius_q6 > 1e-11,
             (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
@@ -499,7 +498,7 @@ class ArrayPrograms(Programs):
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - k.d5*r21_from_q1_before_q56_before_q6_of_q3
         r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + k.d5*r22_from_q1_before_q6_before_q6_of_q3
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - k.a2_squared_plus_a3_squared
@@ -522,7 +521,7 @@ class ArrayPrograms(Programs):
                 wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
                 wrist_y_from_q1_along = k.d5*r32
                 along_q6_of_q3 = (
-                    -2.0*(-wrist_x_from_q1_along*wrist_x_from_q1_fixed - wrist_y_from_q1_along*wrist_y_from_q1_fixed)
+                    2.0*(wrist_x_from_q1_along*wrist_x_from_q1_fixed + wrist_y_from_q1_along*wrist_y_from_q1_fixed)
                 )
                 wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
                 across_q6_of_q3 = (
@@ -545,7 +544,7 @@ class ArrayPrograms(Programs):
                     select(-part_of_lowest_q6_of_q3 < -1.0, -1.0, -part_of_lowest_q6_of_q3),
                 )
                 holds = swing_q6_of_q3 > k.size_q1_for_q3_times_rounding
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 highest_q6_of_q3 = select(holds, highest_q6_of_q3, 1.0)
                 lowest_q6_of_q3 = select(holds, lowest_q6_of_q3, -1.0)
                 near_q6_of_q3 = atan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
@@ -564,19 +563,19 @@ class ArrayPrograms(Programs):
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
                 part_of_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
                 part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(part_of_cost_q6_of_q3*part_of_cost_q6_of_q3 + part_of_cost_q6_of_q3_2*part_of_cost_q6_of_q3_2)
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11)
                 holds = stays_q6_of_q3
-                # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
                 cos_q6 = select(holds, cos_q6_before_q6_of_q3, cos_q6_after_q6_of_q3)
                 sin_q6 = select(holds, sin_q6_before_q6_of_q3, sin_q6_after_q6_of_q3)
                 return (cos_q6, sin_q6)
 
-            # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
             cos_q6, sin_q6 = elsewhere(
                 (radius_q6 > 0.1) & (size_of_value_q6_of_q3 > k.part_of_cos_q6),
                 (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
@@ -588,7 +587,7 @@ class ArrayPrograms(Programs):
             )
             return (cos_q6, sin_q6)
 
-        # kept where the rest can be reached
+        # moved to where q3 has a solution, if that changes the pose by rounding only
         cos_q6, sin_q6 = elsewhere(
             size_of_value_q6_of_q3 <= k.size_q1_for_q3,
             (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
@@ -600,20 +599,25 @@ class ArrayPrograms(Programs):
         )
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5_times_r33
-        wrist_x_from_q1 = ahead_q1 - k.d5*r21_from_q1_before_q56  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = ahead_q1 - k.d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + k.d5*r22_from_q1_before_q6  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + k.d5*r22_from_q1_before_q6
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (k.a2_plus_a3 + reach)*(k.a2_plus_a3 - reach)  # 1 - cosine, times the scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
+        one_less_cos_q3 = (k.a2_plus_a3 + reach)*(k.a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - k.a2_minus_a3)*(k.a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: where its turn is open
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = select(absolute(sum_of_cos_q3) > 0.0, sum_of_cos_q3, 1.0)
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = select(absolute(both_q3) > 0.0, both_q3, 1.0)
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        sin_q3 = 2.0*root(sine_square_q3)*sigma_elbow/absolute(sum_q3)
+        axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0*root(sine_square_q3)*sigma_elbow/absolute(divisor_of_cos_q3)
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - k.offset_a2)*DEGREE
@@ -625,7 +629,7 @@ class ArrayPrograms(Programs):
         arm_across_q2 = k.a3*sin_q3
         direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
         direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2, direction_y_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_q2, direction_y_q2),
@@ -633,28 +637,28 @@ class ArrayPrograms(Programs):
             (ref_a2,),
         )
         angle_q2 = atan2(direction_y_q2, direction_x_q2)
-        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(k.offset_a2 + angle_q2/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(k.offset_a2 + angle_q2/DEGREE, near_a2)  # A2: whole turns added
         angle_q3 = atan2(sin_q3, cos_q3)
-        open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: where its turn is open
+        open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(k.offset_a3 + angle_q3/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(k.offset_a3 + angle_q3/DEGREE, near_a3)  # A3: whole turns added
         angle_with_q4 = atan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)/DEGREE, near_a4)
-        open_a5 = select(k.single_a5, k.mid_a5, ref_a5)  # A5: where its turn is open
+        open_a5 = select(k.single_a5, k.mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
         near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        axis_a5 = nearest_period(k.offset_a5 + degrees(q6_radius_of_q5, cos_q5), near_a5)  # A5: its turn
-        open_a6 = select(k.single_a6, k.mid_a6, ref_a6)  # A6: where its turn is open
+        axis_a5 = nearest_period(k.offset_a5 + degrees(q6_radius_of_q5, cos_q5), near_a5)  # A5: whole turns added
+        open_a6 = select(k.single_a6, k.mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
         near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
-        axis_a6 = nearest_period(k.offset_a6 + degrees(sin_q6, cos_q6), near_a6)  # A6: its turn
+        axis_a6 = nearest_period(k.offset_a6 + degrees(sin_q6, cos_q6), near_a6)  # A6: whole turns added
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
-        require(status, sine_square_q3 >= -k.scale_q3_squared_times_rounding, Status.UNREACHABLE)
+        require(status, absolute(cos_q3) <= 1.0000000000005, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -96,7 +96,7 @@ class ArrayPrograms(Programs):
         _, _, _, ref_a4, ref_a5, ref_a6 = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -105,13 +105,14 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - k.flange_x*r11 - k.flange_y*r12 - k.flange_z*r13  # the point that the last joints turn about
+        # wrist centre: the point in which the last axes intersect
+        wrist_x = x - k.flange_x*r11 - k.flange_y*r12 - k.flange_z*r13
         axis_a1 = k.offset_a1 + wrist_x
         wrist_y = y - k.flange_x*r21 - k.flange_y*r22 - k.flange_z*r23
         axis_a2 = k.offset_a2 + wrist_y
         wrist_z = z - k.flange_x*r31 - k.flange_y*r32 - k.flange_z*r33
         axis_a3 = k.offset_a3 + wrist_z
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # polar coordinates: the radius at angle a4
 
         def elsewhere_direction_x_a4(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - k.offset_a4)*DEGREE
@@ -121,25 +122,27 @@ class ArrayPrograms(Programs):
 
         direction_x_a4 = sigma_wrist*r33
         direction_y_a4 = sigma_wrist*r13
-        # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
         direction_x_a4, direction_y_a4 = elsewhere(
             radius_a4 > 1e-11,
             (direction_x_a4, direction_y_a4),
             elsewhere_direction_x_a4,
             (ref_a4,),
         )
-        open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        axis_a4 = nearest_period(k.offset_a4 + degrees(direction_y_a4, direction_x_a4), near_a4)  # A4: its turn
+        # A4: whole turns added
+        axis_a4 = nearest_period(k.offset_a4 + degrees(direction_y_a4, direction_x_a4), near_a4)
         a4_radius_of_a5 = sigma_wrist*radius_a4
-        open_a5 = select(k.single_a5, k.mid_a5, ref_a5)  # A5: where its turn is open
+        open_a5 = select(k.single_a5, k.mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
         near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        axis_a5 = nearest_period(k.offset_a5 + degrees(-r23, a4_radius_of_a5), near_a5)  # A5: its turn
+        axis_a5 = nearest_period(k.offset_a5 + degrees(-r23, a4_radius_of_a5), near_a5)  # A5: whole turns added
         scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
         direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
-        open_a6 = select(k.single_a6, k.mid_a6, ref_a6)  # A6: where its turn is open
+        open_a6 = select(k.single_a6, k.mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
         near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
-        axis_a6 = nearest_period(k.offset_a6 + degrees(direction_y_a6, scaled_r11_from_a4), near_a6)  # A6: its turn
+        # A6: whole turns added
+        axis_a6 = nearest_period(k.offset_a6 + degrees(direction_y_a6, scaled_r11_from_a4), near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -37,7 +37,7 @@ class ArrayPrograms(OrientationPrograms):
         (axis_c,) = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, absolute(axis_c) <= 1e9, Status.BAD_INPUT)
         c = DEGREE*(axis_c - k.offset_c)
         sin_c = sin(c)
@@ -55,14 +55,15 @@ class ArrayPrograms(OrientationPrograms):
         (ref_c,) = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
-        open_c = select(k.single_c, k.mid_c, ref_c)  # C: where its turn is open
+        open_c = select(k.single_c, k.mid_c, ref_c)  # C: without a commanded turn, the value nearest to this
         near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
-        axis_c = nearest_period(k.offset_c + degrees(heading_across, heading_along), near_c)  # C: its turn
+        axis_c = nearest_period(k.offset_c + degrees(heading_across, heading_along), near_c)  # C: whole turns added
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         return (axis_c,), status
@@ -82,7 +83,7 @@ class ArrayPrograms(OrientationPrograms):
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self.constants
         status = passed(rotation, flange_axis, base_axis)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -92,5 +93,5 @@ class ArrayPrograms(OrientationPrograms):
             ),
             Status.BAD_INPUT,
         )
-        flange_along = flange_axis_z*k.tool_z  # what the flange holds, along the axis that it turns about
+        flange_along = flange_axis_z*k.tool_z  # the flange's part along the axis about which the flange turns
         return (base_axis_x*flange_along, base_axis_y*flange_along, base_axis_z*flange_along), status

@@ -40,7 +40,7 @@ class ArrayPrograms(Programs):
         axis_r, axis_theta, axis_phi = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_phi) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_theta) <= 1e9),
@@ -53,11 +53,11 @@ class ArrayPrograms(Programs):
         phi = DEGREE*axis_phi_minus_offset_phi
         sin_phi = sin(phi)
         r_times_sin_phi = r*sin_phi
-        x = r_times_sin_phi*cos_theta  # x: affine in the x equation
+        x = r_times_sin_phi*cos_theta  # x from the x equation, which is linear in it
         sin_theta = sin(theta)
-        y = r_times_sin_phi*sin_theta  # y: affine in the y equation
+        y = r_times_sin_phi*sin_theta  # y from the y equation, which is linear in it
         cos_phi = cos(phi)
-        z = r*cos_phi  # z: affine in the z equation
+        z = r*cos_phi  # z from the z equation, which is linear in it
         # R where the machine has no pose
         require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
         # Phi where the machine has no pose
@@ -77,7 +77,7 @@ class ArrayPrograms(Programs):
         _, ref_theta, ref_phi = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -86,8 +86,8 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
         axis_r = k.offset_r + radius_phi
 
         def elsewhere_direction_x_theta(ref_theta: Real) -> Reals:
@@ -96,16 +96,17 @@ class ArrayPrograms(Programs):
             direction_y_theta = sin(free_theta)
             return (direction_x_theta, direction_y_theta)
 
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         direction_x_theta, direction_y_theta = elsewhere(
             radius_theta > k.machine_scale_times_free_angle,
             (x, y),
             elsewhere_direction_x_theta,
             (ref_theta,),
         )
-        open_theta = select(k.single_theta, k.mid_theta, ref_theta)  # Theta: where its turn is open
+        # Theta: without a commanded turn, the value nearest to this
+        open_theta = select(k.single_theta, k.mid_theta, ref_theta)
         near_theta = select(turn_theta != 0, 360.0*select(turn_theta > 0, turn_theta - 1, turn_theta), open_theta)
-        # Theta: its turn
+        # Theta: whole turns added
         axis_theta = nearest_period(k.offset_theta + degrees(direction_y_theta, direction_x_theta), near_theta)
 
         def elsewhere_direction_x_phi(ref_phi: Real) -> Reals:
@@ -115,7 +116,7 @@ class ArrayPrograms(Programs):
             direction_y_phi = sin(part_of_direction_y_phi)
             return (direction_x_phi, direction_y_phi)
 
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         direction_x_phi, direction_y_phi = elsewhere(
             radius_phi > k.machine_scale_times_free_angle,
             (z, radius_theta),

@@ -25,7 +25,7 @@ class ArrayPrograms(Programs):
         axis_x, axis_y, axis_z = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9) & (absolute(axis_z) <= 1e9),
@@ -43,7 +43,7 @@ class ArrayPrograms(Programs):
         x, y, z = position
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         axis_x = k.offset_x + x
         axis_y = k.offset_y + y

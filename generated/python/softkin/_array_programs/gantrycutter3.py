@@ -37,7 +37,7 @@ class ArrayPrograms(Programs):
         axis_x, axis_y, axis_z, axis_r = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -72,22 +72,23 @@ class ArrayPrograms(Programs):
         _, _, _, ref_r = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(ref_r) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         axis_x = k.offset_x + x
         axis_y = k.offset_y + y
         axis_z = k.offset_z + z
         direction_y_r = k.direction_r*heading_across
-        open_r = select(k.single_r, k.mid_r, ref_r)  # R: where its turn is open
+        open_r = select(k.single_r, k.mid_r, ref_r)  # R: without a commanded turn, the value nearest to this
         near_r = select(turn_r != 0, 360.0*select(turn_r > 0, turn_r - 1, turn_r), open_r)
-        axis_r = nearest_period(k.offset_r + degrees(direction_y_r, heading_along), near_r)  # R: its turn
+        axis_r = nearest_period(k.offset_r + degrees(direction_y_r, heading_along), near_r)  # R: whole turns added
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         return (axis_x, axis_y, axis_z, axis_r), status

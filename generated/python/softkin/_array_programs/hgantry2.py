@@ -25,7 +25,7 @@ class ArrayPrograms(Programs):
         axis_a, axis_b = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9), Status.BAD_INPUT)
         a = axis_a - k.offset_a
         b = axis_b - k.offset_b
@@ -40,11 +40,11 @@ class ArrayPrograms(Programs):
         x, y, z = position
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         axis_a = a + k.offset_a
         b = -x - y
         axis_b = b + k.offset_b

@@ -25,7 +25,7 @@ class ArrayPrograms(Programs):
         axis_a, axis_b, axis_z = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_z) <= 1e9),
@@ -45,9 +45,9 @@ class ArrayPrograms(Programs):
         x, y, z = position
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        a = x - y  # a, b: affine in the x and y equations
+        a = x - y  # a and b from the x and y equations, linear in both
         axis_a = a + k.offset_a
         b = -x - y
         axis_b = b + k.offset_b

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -84,7 +84,7 @@ class ArrayPrograms(Programs):
         _, _, _, ref_a, ref_b = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -93,7 +93,7 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        wrist_x = x - r13*k.tool_length_times_tool_side  # the point that the last joints turn about
+        wrist_x = x - r13*k.tool_length_times_tool_side  # wrist centre: the point in which the last axes intersect
         axis_x = k.offset_x + wrist_x
         wrist_y = y - r23*k.tool_length_times_tool_side
         axis_y = k.offset_y + wrist_y
@@ -101,7 +101,7 @@ class ArrayPrograms(Programs):
         axis_z = k.offset_z + wrist_z
         r13_of_a = r13/k.tool_side
         r23_of_a = r23/k.tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
 
         def elsewhere_direction_x_a(ref_a: Real) -> Reals:
             free_a = (ref_a - k.offset_a)*DEGREE
@@ -111,20 +111,20 @@ class ArrayPrograms(Programs):
 
         direction_x_a = sigma_roll*r13_of_a
         direction_y_a = sigma_roll*r23_of_a
-        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_a, direction_y_a = elsewhere(
             radius_a > 1e-11,
             (direction_x_a, direction_y_a),
             elsewhere_direction_x_a,
             (ref_a,),
         )
-        open_a = select(k.single_a, k.mid_a, ref_a)  # A: where its turn is open
+        open_a = select(k.single_a, k.mid_a, ref_a)  # A: without a commanded turn, the value nearest to this
         near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
-        axis_a = nearest_period(k.offset_a + degrees(direction_y_a, direction_x_a), near_a)  # A: its turn
+        axis_a = nearest_period(k.offset_a + degrees(direction_y_a, direction_x_a), near_a)  # A: whole turns added
         a_radius_of_b = sigma_roll*radius_a
-        open_b = select(k.single_b, k.mid_b, ref_b)  # B: where its turn is open
+        open_b = select(k.single_b, k.mid_b, ref_b)  # B: without a commanded turn, the value nearest to this
         near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
-        axis_b = nearest_period(k.offset_b + degrees(a_radius_of_b, r33), near_b)  # B: its turn
+        axis_b = nearest_period(k.offset_b + degrees(a_radius_of_b, r33), near_b)  # B: whole turns added
         return (axis_x, axis_y, axis_z, axis_a, axis_b), status
 
     def limits(self, axes: Reals) -> Codes:

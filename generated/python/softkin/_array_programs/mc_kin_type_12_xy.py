@@ -38,58 +38,65 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2 = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
         a1 = DEGREE*(axis_a1 - k.offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -k.link_length_1*sin_a1  # rod upper
+        pivot_upper_x = -k.link_length_1*sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -k.link_length_1*cos_a1  # rod upper
-        centre_1_x: Real
-        centre_1_y: Real
-        if k.swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_1_y = pivot_upper_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_1_y = pivot_upper_y
+        pivot_upper_y = -k.link_length_1*cos_a1
         a2 = DEGREE*(axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
-        pivot_rear_x = k.part_of_pivot_rear_x*sin_a1 - pivot_upper_x - k.link_length_5*cos_a2  # rod rear
+        # rod rear: centre about which it swings
+        scaled_pivot_rear_x = k.part_of_scaled_pivot_rear_y*sin_a1 - k.part_of_scaled_pivot_rear_y_2*cos_a2
         sin_a2 = sin(a2)
-        pivot_rear_y = k.part_of_pivot_rear_x*cos_a1 + k.link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = -select(k.swap_xy, pivot_rear_y, pivot_rear_x)*k.link_length_2_by_link_length_3
-        apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -select(k.swap_xy, pivot_rear_x, pivot_rear_y)*k.link_length_2_by_link_length_3
-        apart_2_y = centre_2_y - centre_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y*cos_a1 + k.part_of_scaled_pivot_rear_y_2*sin_a2
+        centre_1_x: Real
+        centre_2_x: Real
+        centre_1_y: Real
+        centre_2_y: Real
+        if k.swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_2_x = -scaled_pivot_rear_y
+            centre_1_y = pivot_upper_x
+            centre_2_y = -scaled_pivot_rear_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_2_x = -scaled_pivot_rear_x
+            centre_1_y = pivot_upper_y
+            centre_2_y = -scaled_pivot_rear_y
+        centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_1_to_2_y = centre_2_y - centre_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
         normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
-        between_centres = root(normal_divisor)
+        between_centres = root(normal_divisor)  # distance between the centres
         one_by_normal_square = 1.0/normal_divisor
-        # the square of the height over the centres
+        # square of the height over the line of the centres
         height_square = (
             0.25*(k.link_length_2_plus_radius_2 - between_centres)*(between_centres + k.link_length_2_minus_radius_2)
             *(between_centres + k.link_length_2_plus_radius_2)*(between_centres - k.link_length_2_minus_radius_2)
             *one_by_normal_square
         )
-        # foot of the height, as a share
-        along_centres = 0.5*(normal_divisor + k.part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*k.assembly_sign
-        x = centre_1_x + foot_x - apart_2_y*rise
-        foot_y = along_centres*apart_2_y
-        y = centre_1_y + foot_y + apart_2_x*rise
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5*(normal_divisor + k.part_of_foot_fraction)*one_by_normal_square
+        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*k.assembly_sign
+        x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal
+        foot_y = centre_1_to_2_y*foot_fraction
+        y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal
         span_upper_x: Real
         span_upper_y: Real
         if k.swap_xy:
-            span_upper_x = y  # rod upper
-            span_upper_y = x  # rod upper
+            span_upper_x = y  # rod upper: known part of its vector
+            span_upper_y = x
         else:
-            span_upper_x = x  # rod upper
-            span_upper_y = y  # rod upper
+            span_upper_x = x  # rod upper: known part of its vector
+            span_upper_y = y
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/k.link_length_2
-        span_rear_x = -k.link_length_3_by_link_length_2*span_upper_x  # rod rear
-        span_rear_y = -k.link_length_3_by_link_length_2*span_upper_y  # rod rear
+        span_rear_x = -k.link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
+        span_rear_y = -k.link_length_3_by_link_length_2*span_upper_y
         branch_w = (
             (
                 (k.part_of_branch_w*cos_a1 - k.link_length_2*span_rear_y)*cos_a2
@@ -116,7 +123,7 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2 = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -130,16 +137,15 @@ class ArrayPrograms(Programs):
         span_upper_x: Real
         span_upper_y: Real
         if k.swap_xy:
-            span_upper_x = y  # rod upper
-            span_upper_y = x  # rod upper
+            span_upper_x = y  # rod upper: known part of its vector
+            span_upper_y = x
         else:
-            span_upper_x = x  # rod upper
-            span_upper_y = y  # rod upper
-        # effective length that the angle turns
+            span_upper_x = x  # rod upper: known part of its vector
+            span_upper_y = y
+        # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         divisor_a1 = select(effective_a1 > k.link_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*k.twice_link_length_1  # a1: law of cosines in the rod upper equation
-        # 1 - cosine, times the scale
+        # law of cosines for a1: rod upper: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (divisor_a1 + k.link_length_1_minus_link_length_2)*(divisor_a1 + k.link_length_1_plus_link_length_2)
         )
@@ -147,21 +153,22 @@ class ArrayPrograms(Programs):
         one_plus_cos_a1 = (
             (k.link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - k.link_length_1_minus_link_length_2)
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/divisor_of_cos_a1
         sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
-        span_rear_x = -k.link_length_3_by_link_length_2*span_upper_x  # rod rear
-        along_a2 = (k.link_length_2*span_rear_x - k.part_of_branch_w*sin_a1)/k.link_length_2
+        span_rear_x = -k.link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
+        along_a2 = span_rear_x - k.part_of_along_a2*sin_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
-        span_rear_y = -k.link_length_3_by_link_length_2*span_upper_y  # rod rear
-        across_a2 = (k.part_of_branch_w*cos_a1 - k.link_length_2*span_rear_y)/k.link_length_2
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        span_rear_y = -k.link_length_3_by_link_length_2*span_upper_y
+        across_a2 = k.part_of_along_a2*cos_a1 - span_rear_y
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
         divisor_a2 = select(effective_a2 > k.link_length_5_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*k.twice_link_length_5  # a2: law of cosines in the rod rear equation
-        # 1 - cosine, times the scale
+        # law of cosines for a2: rod rear: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2 + k.link_length_4_plus_link_length_5)*(divisor_a2 + k.link_length_5_minus_link_length_4)
         )
@@ -169,56 +176,57 @@ class ArrayPrograms(Programs):
         one_plus_cos_a2 = (
             (k.link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 - k.link_length_5_minus_link_length_4)
         )
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        pivot_upper_x = -k.link_length_1*sin_a1  # rod upper
-        pivot_upper_y = -k.link_length_1*cos_a1  # rod upper
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        pivot_upper_x = -k.link_length_1*sin_a1  # rod upper: centre about which it swings
+        pivot_upper_y = -k.link_length_1*cos_a1
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
+        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
+        # rod rear: centre about which it swings
+        scaled_pivot_rear_x = k.part_of_scaled_pivot_rear_y*sin_a1 - k.part_of_scaled_pivot_rear_y_2*cos_a2
+        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2
+        scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y*cos_a1 + k.part_of_scaled_pivot_rear_y_2*sin_a2
         centre_1_x: Real
         centre_1_y: Real
+        centre_2_x: Real
+        centre_2_y: Real
         if k.swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
+            centre_2_x = -scaled_pivot_rear_y
+            centre_2_y = -scaled_pivot_rear_x
         else:
             centre_1_x = pivot_upper_x
             centre_1_y = pivot_upper_y
+            centre_2_x = -scaled_pivot_rear_x
+            centre_2_y = -scaled_pivot_rear_y
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/sum_a2
-        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
-        pivot_rear_x = k.part_of_pivot_rear_x*sin_a1 - pivot_upper_x - k.link_length_5*cos_a2  # rod rear
-        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2
-        pivot_rear_y = k.part_of_pivot_rear_x*cos_a1 + k.link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = select(k.swap_xy, -pivot_rear_y, -pivot_rear_x)*k.link_length_2_by_link_length_3
         rod_2_x = x - centre_2_x
-        centre_2_y = select(k.swap_xy, -pivot_rear_x, -pivot_rear_y)*k.link_length_2_by_link_length_3
         rod_2_y = y - centre_2_y
         type2_arms_aligned = k.part_of_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
-        open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(k.offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
-        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: where its turn is open
+        axis_a1 = nearest_period(k.offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: whole turns added
+        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(k.offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
+        axis_a2 = nearest_period(k.offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: whole turns added
         # a1: its effective length is too short
         # a1: out of reach
         require(
             status,
-            (
-                (effective_a1 > k.link_length_1_times_shortest_link)
-                & (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1)
-            ),
+            ((effective_a1 > k.link_length_1_times_shortest_link) & (absolute(cos_swing_a1) <= 1.0000000000005)),
             Status.UNREACHABLE,
         )
         # a2: its effective length is too short
         # a2: out of reach
         require(
             status,
-            (
-                (effective_a2 > k.link_length_5_times_shortest_link)
-                & (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2)
-            ),
+            ((effective_a2 > k.link_length_5_times_shortest_link) & (absolute(cos_swing_a2) <= 1.0000000000005)),
             Status.UNREACHABLE,
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate

@@ -25,18 +25,18 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2 = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
         a1 = axis_a1 - k.offset_a1
         a2 = axis_a2 - k.offset_a2
-        pivot_1_x = -0.5*(a1 + k.tcp_link_distance - a2)  # rod 1
-        root_square_y = (k.arm_length + pivot_1_x)*(k.arm_length - pivot_1_x)  # y: quadratic in the rod 1 equation
-        x = 0.5*(a1 + a2)  # x: affine in the x equation
-        y = root(root_square_y)*k.assembly_sign
+        pivot_1_x = -0.5*(a1 + k.tcp_link_distance - a2)  # rod 1: centre about which it swings
+        radicand_y = (k.arm_length + pivot_1_x)*(k.arm_length - pivot_1_x)  # quadratic equation for y: rod 1
+        x = 0.5*(a1 + a2)  # x from the x equation, which is linear in it
+        y = root(radicand_y)*k.assembly_sign
         # the mirror that the machine does not have
         require(status, pivot_1_x >= -k.machine_scale_times_rounding, Status.IMPOSSIBLE)
         # rod 1 cannot reach
-        require(status, root_square_y >= -k.arm_length_squared_times_rounding, Status.IMPOSSIBLE)
+        require(status, radicand_y >= -k.arm_length_squared_times_rounding, Status.IMPOSSIBLE)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
@@ -46,19 +46,19 @@ class ArrayPrograms(Programs):
         x, y, z = position
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
-        root_square_a2 = (k.arm_length + y)*(k.arm_length - y)  # a2: quadratic in the rod 1 (through x) equation
+        radicand_a2 = (k.arm_length + y)*(k.arm_length - y)  # quadratic equation for a2: rod 1 (through x)
         type2_flat = k.assembly_sign_by_arm_length*y
         middle_a2 = k.span_1_x + x
-        a2 = middle_a2 + root(root_square_a2)
-        a1 = 2.0*x - a2  # a1: affine in the x equation
+        a2 = middle_a2 + root(radicand_a2)
+        a1 = 2.0*x - a2  # a1 from the x equation, which is linear in it
         axis_a1 = a1 + k.offset_a1
         axis_a2 = a2 + k.offset_a2
         # rod 1 (through x) cannot reach
-        require(status, root_square_a2 >= -k.part_of_constant, Status.UNREACHABLE)
+        require(status, radicand_a2 >= -k.part_of_constant, Status.UNREACHABLE)
         # flat: the other assembly mode, or too near to losing the plate
         require(status, type2_flat >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2), status

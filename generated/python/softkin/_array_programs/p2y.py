@@ -25,7 +25,7 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2 = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
         a1 = axis_a1 - k.offset_a1
         a2 = axis_a2 - k.offset_a2
@@ -40,11 +40,11 @@ class ArrayPrograms(Programs):
         x, y, z = position
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
-        a1 = x + y  # a1, a2: affine in the x and y equations
+        a1 = x + y  # a1 and a2 from the x and y equations, linear in both
         axis_a1 = a1 + k.offset_a1
         a2 = y - x
         axis_a2 = a2 + k.offset_a2

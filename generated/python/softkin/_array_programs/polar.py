@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
         axis_c, axis_r = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(axis_c) <= 1e9) & (absolute(axis_r) <= 1e9), Status.BAD_INPUT)
         r = axis_r - k.offset_r
         c = DEGREE*(axis_c - k.offset_c)
@@ -59,7 +59,7 @@ class ArrayPrograms(Programs):
         ref_c, _ = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(ref_c) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9),
@@ -67,7 +67,7 @@ class ArrayPrograms(Programs):
         )
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
-        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
             free_c = (ref_c - k.offset_c)*DEGREE
@@ -75,16 +75,16 @@ class ArrayPrograms(Programs):
             direction_y_c = sin(free_c)
             return (direction_x_c, direction_y_c)
 
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         direction_x_c, direction_y_c = elsewhere(
             radius_c > k.machine_scale_times_free_angle,
             (x, y),
             elsewhere_direction_x_c,
             (ref_c,),
         )
-        open_c = select(k.single_c, k.mid_c, ref_c)  # C: where its turn is open
+        open_c = select(k.single_c, k.mid_c, ref_c)  # C: without a commanded turn, the value nearest to this
         near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
-        axis_c = nearest_period(k.offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
+        axis_c = nearest_period(k.offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: whole turns added
         axis_r = k.offset_r + radius_c
         return (axis_c, axis_r), status
 

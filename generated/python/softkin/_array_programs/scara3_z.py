@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2, axis_a3, axis_z = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -79,7 +79,7 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2, ref_a3, _ = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -88,24 +88,26 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
         cos_heading = heading_along/heading_divisor
-        wrist_x = x - k.arm_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - k.arm_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_divisor
-        wrist_y = y - k.arm_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # 1 - cosine, times the scale
+        wrist_y = y - k.arm_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (k.arm_length_1_plus_arm_length_2 + reach)*(k.arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.arm_length_1_minus_arm_length_2)*(k.arm_length_1_minus_arm_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - k.offset_a1)*DEGREE
@@ -117,7 +119,7 @@ class ArrayPrograms(Programs):
         arm_across_a1 = k.arm_length_2*sin_a2
         direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
         direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
@@ -125,23 +127,23 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
-        open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(k.offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(k.offset_a1 + angle_a1/DEGREE, near_a1)  # A1: whole turns added
         angle_a2 = atan2(sin_a2, cos_a2)
-        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(k.offset_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(k.offset_a2 + angle_a2/DEGREE, near_a2)  # A2: whole turns added
         angle_heading = atan2(sin_heading, cos_heading)
-        open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: where its turn is open
+        open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        # a3: what the sum a123 leaves; A3: its turn
+        # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3 = nearest_period(k.offset_a3 + (angle_heading - angle_a1 - angle_a2)/DEGREE, near_a3)
         axis_z = k.offset_z + z
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # a2: out of reach
-        require(status, sine_square_a2 >= -k.scale_a2_squared_times_rounding, Status.UNREACHABLE)
+        require(status, absolute(cos_a2) <= 1.0000000000005, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_z), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -79,7 +79,7 @@ class ArrayPrograms(Programs):
         _, ref_a2, ref_a3, ref_a4 = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -88,25 +88,27 @@ class ArrayPrograms(Programs):
             ),
             Status.BAD_INPUT,
         )
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
         cos_heading = heading_along/heading_divisor
-        wrist_x = x - k.link_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - k.link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_divisor
-        wrist_y = y - k.link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # 1 - cosine, times the scale
+        wrist_y = y - k.link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
+        # law of cosines for a3: x² + y²: 1 - cosine, times a scale
         one_less_cos_a3 = (k.link_length_1_plus_link_length_2 + reach)*(k.link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - k.link_length_1_minus_link_length_2)*(k.link_length_1_minus_link_length_2 + reach)
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         axis_a1 = k.offset_a1 + z
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        sin_a3 = 2.0*root(sine_square_a3)*sigma_elbow/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_a3 = 2.0*root(sine_square_a3)*sigma_elbow/divisor_of_cos_a3
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - k.offset_a2)*DEGREE
@@ -118,7 +120,7 @@ class ArrayPrograms(Programs):
         arm_across_a2 = k.link_length_2*sin_a3
         direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
         direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-        # a2: linear pair in the x and y equations; its reference where it is free
+        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a2, direction_y_a2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_a2, direction_y_a2),
@@ -126,22 +128,22 @@ class ArrayPrograms(Programs):
             (ref_a2,),
         )
         angle_a2 = atan2(direction_y_a2, direction_x_a2)
-        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(k.offset_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(k.offset_a2 + angle_a2/DEGREE, near_a2)  # A2: whole turns added
         angle_a3 = atan2(sin_a3, cos_a3)
-        open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: where its turn is open
+        open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(k.offset_a3 + angle_a3/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(k.offset_a3 + angle_a3/DEGREE, near_a3)  # A3: whole turns added
         angle_heading = atan2(sin_heading, cos_heading)
-        open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        # a4: what the sum a234 leaves; A4: its turn
+        # a4 from the sum a234 of angles about parallel axes; A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + (angle_heading - angle_a2 - angle_a3)/DEGREE, near_a4)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # a3: out of reach
-        require(status, sine_square_a3 >= -k.scale_a3_squared_times_rounding, Status.UNREACHABLE)
+        require(status, absolute(cos_a3) <= 1.0000000000005, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -88,7 +88,7 @@ class ArrayPrograms(Programs):
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -100,22 +100,25 @@ class ArrayPrograms(Programs):
         heading_along: Real
         heading_across: Real
         if k.flange_down:
-            heading_along = r11 - r22  # projection: the tool direction swings to the machine's, the twist is kept
+            # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+            heading_along = r11 - r22
             heading_across = r12 + r21
         else:
-            heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+            # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+            heading_along = r11 + r22
             heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
-        reach = sqrt(x*x + y*y)
-        # 1 - cosine, times the scale
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (k.link_length_1_plus_link_length_2 + reach)*(k.link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.link_length_1_minus_link_length_2)*(k.link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - k.offset_a1)*DEGREE
@@ -127,7 +130,7 @@ class ArrayPrograms(Programs):
         arm_across_a1 = k.link_length_2*sin_a2
         direction_x_a1 = arm_across_a1*y + arm_along_a1*x
         direction_y_a1 = arm_along_a1*y - arm_across_a1*x
-        # a1: linear pair in the x and y equations; its reference where it is free
+        # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
@@ -135,25 +138,25 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
-        open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: where its turn is open
+        open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(k.offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(k.offset_a1 + angle_a1/DEGREE, near_a1)  # A1: whole turns added
         angle_a2 = atan2(sin_a2, cos_a2)
-        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: where its turn is open
+        open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(k.offset_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(k.offset_a2 + angle_a2/DEGREE, near_a2)  # A2: whole turns added
         angle_heading = atan2(heading_across, heading_along)
-        open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: where its turn is open
+        open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE, near_a4)
-        a4 = DEGREE*(axis_a4 - k.offset_a4)  # A4: turns count from here on
-        a3 = z - a4*k.part_of_z  # a3: affine in the z equation
+        a4 = DEGREE*(axis_a4 - k.offset_a4)  # A4: joint value with its whole turns
+        a3 = z - a4*k.part_of_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + k.offset_a3
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # a2: out of reach
-        require(status, sine_square_a2 >= -k.scale_a2_squared_times_rounding, Status.UNREACHABLE)
+        require(status, absolute(cos_a2) <= 1.0000000000005, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
 
     def limits(self, axes: Reals) -> Codes:

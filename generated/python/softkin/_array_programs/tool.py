@@ -44,7 +44,7 @@ class ArrayPrograms(OrientationPrograms):
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self.constants
         status = passed(rotation, flange_axis, base_axis)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (
@@ -54,6 +54,6 @@ class ArrayPrograms(OrientationPrograms):
             ),
             Status.BAD_INPUT,
         )
-        # what the flange holds, along the axis that it turns about
+        # the flange's part along the axis about which the flange turns
         flange_along = flange_axis_x*k.tool_x + flange_axis_y*k.tool_y + flange_axis_z*k.tool_z
         return (base_axis_x*flange_along, base_axis_y*flange_along, base_axis_z*flange_along), status

@@ -25,66 +25,79 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
             Status.BAD_INPUT,
         )
         a2 = axis_a2 - k.offset_a2
-        pivot_2_y = k.part_of_pivot_2_y_2 - a2*k.part_of_pivot_2_y  # rod 2
+        pivot_2_y = k.part_of_pivot_2_y_2 - a2*k.part_of_pivot_2_y
         a3 = axis_a3 - k.offset_a3
-        pivot_3_y = a3*k.part_of_pivot_2_y - k.part_of_pivot_2_y_2  # rod 3
+        pivot_3_y = a3*k.part_of_pivot_2_y - k.part_of_pivot_2_y_2
         a1 = axis_a1 - k.offset_a1
-        pivot_1_z = -a1*k.cos_rail_angle  # rod 1
-        pivot_2_z = -a2*k.cos_rail_angle  # rod 2
-        apart_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*k.cos_rail_angle  # rod 3
-        apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = k.inner_radius_minus_outer_radius - a1*k.sin_rail_angle  # rod 1
-        pivot_2_x = k.part_of_pivot_2_x + a2*k.half_sin_rail_angle  # rod 2
-        apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = k.part_of_pivot_2_x + a3*k.half_sin_rail_angle  # rod 3
-        apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
-        # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
-        # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        pivot_1_z = -a1*k.cos_rail_angle
+        pivot_2_z = -a2*k.cos_rail_angle
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
+        pivot_3_z = -a3*k.cos_rail_angle
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = k.inner_radius_minus_outer_radius - a1*k.sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = k.part_of_pivot_2_x + a2*k.half_sin_rail_angle  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = k.part_of_pivot_2_x + a3*k.half_sin_rail_angle  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
+        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
+        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
         normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
         one_by_normal_square = 1.0/normal_divisor
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+            *(
+                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
+            )
         )
         foot_y = (
             one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+            *(
+                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
+            )
         )
         foot_z = (
             one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+            *(
+                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
+            )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = k.arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
-        rise = root(height_square*one_by_normal_square)*k.assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + normal_y*rise
-        z = foot_z + pivot_1_z + normal_z*rise
-        span_1_x = x - k.inner_radius_minus_outer_radius  # rod 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*k.assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        y = foot_y + height_by_normal*normal_y
+        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        span_1_x = x - k.inner_radius_minus_outer_radius  # rod 1: known part of its vector
         branch_carriage_1 = (a1 + z*k.cos_rail_angle + span_1_x*k.sin_rail_angle)/k.arm_length
-        span_2_y = y - k.part_of_pivot_2_y_2  # rod 2
-        span_2_x = x - k.part_of_pivot_2_x  # rod 2
-        part_of_branch_carriage_2 = span_2_x*k.sin_rail_angle - k.twice_cos_rail_angle*z
-        branch_carriage_2 = (
-            (2.0*a2 + span_2_y*k.sin_rail_angle_times_root_of_3 - part_of_branch_carriage_2)*k.half_by_arm_length
+        span_2_y = y - k.part_of_pivot_2_y_2
+        span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
+        part_of_branch_carriage_2_2 = (
+            span_2_x*k.sin_rail_angle_times_half_by_arm_length - z*k.cos_rail_angle_by_arm_length
         )
-        span_3_y = k.part_of_pivot_2_y_2 + y  # rod 3
+        branch_carriage_2 = (
+            a2*k.one_by_arm_length + k.part_of_branch_carriage_2*span_2_y - part_of_branch_carriage_2_2
+        )
+        span_3_y = k.part_of_pivot_2_y_2 + y
         branch_carriage_3 = (
-            (2.0*a3 - part_of_branch_carriage_2 - span_3_y*k.sin_rail_angle_times_root_of_3)*k.half_by_arm_length
+            a3*k.one_by_arm_length - part_of_branch_carriage_2_2 - k.part_of_branch_carriage_2*span_3_y
         )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
@@ -110,63 +123,56 @@ class ArrayPrograms(Programs):
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        span_1_x = x - k.inner_radius_minus_outer_radius  # rod 1
+        span_1_x = x - k.inner_radius_minus_outer_radius  # rod 1: known part of its vector
         z_minus_cos_rail_angle_squared_times_z = z - z*k.cos_rail_angle_squared
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = (
-            k.arm_length_squared + (k.part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z
-            - (span_1_x - span_1_x*k.sin_rail_angle_squared)*span_1_x - y*y
+        # quadratic equation for a1: rod 1
+        radicand_a1 = (
+            k.arm_length_squared + (k.part_of_radicand_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z - y*y
+            - k.one_minus_sin_rail_angle_squared*span_1_x*span_1_x
         )
-        span_2_x = x - k.part_of_pivot_2_x  # rod 2
-        span_2_y = y - k.part_of_pivot_2_y_2  # rod 2
-        part_of_root_square_a2_3 = (
-            -z_minus_cos_rail_angle_squared_times_z - span_2_x*k.cos_rail_angle_times_sin_rail_angle
+        span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - k.part_of_pivot_2_y_2
+        part_of_radicand_a2_4 = (
+            z_minus_cos_rail_angle_squared_times_z + span_2_x*k.cos_rail_angle_times_sin_rail_angle
         )
-        part_of_root_square_a2_4 = span_2_x*k.sin_rail_angle_squared_times_1_by_4 - span_2_x
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = (
-            k.arm_length_squared + (part_of_root_square_a2_3 + k.part_of_root_square_a2*span_2_y)*z
-            - (k.part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
-            - (span_2_y - span_2_y*k.sin_rail_angle_squared_times_3_by_4)*span_2_y
+        part_of_radicand_a2_5 = span_2_x - span_2_x*k.sin_rail_angle_squared_times_1_by_4
+        # quadratic equation for a2: rod 2
+        radicand_a2 = (
+            k.arm_length_squared + (-part_of_radicand_a2_5 - k.part_of_radicand_a2_2*span_2_y)*span_2_x
+            + (k.part_of_radicand_a2*span_2_y - part_of_radicand_a2_4)*z - k.part_of_radicand_a2_3*span_2_y*span_2_y
         )
-        span_3_y = k.part_of_pivot_2_y_2 + y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = (
-            k.arm_length_squared + span_3_y*(span_3_y*k.sin_rail_angle_squared_times_3_by_4 - span_3_y)
-            + (part_of_root_square_a2_3 - k.part_of_root_square_a2*span_3_y)*z
-            - (-part_of_root_square_a2_4 - k.part_of_root_square_a2_2*span_3_y)*span_2_x
+        span_3_y = k.part_of_pivot_2_y_2 + y
+        # quadratic equation for a3: rod 3
+        radicand_a3 = (
+            k.arm_length_squared + (k.part_of_radicand_a2_2*span_3_y - part_of_radicand_a2_5)*span_2_x
+            + (-part_of_radicand_a2_4 - k.part_of_radicand_a2*span_3_y)*z - k.part_of_radicand_a2_3*span_3_y*span_3_y
         )
         cos_rail_angle_times_z = z*k.cos_rail_angle
         middle_a1 = cos_rail_angle_times_z + span_1_x*k.sin_rail_angle
-        a1 = root(root_square_a1)*sigma_carriage_1 - middle_a1
-        pivot_1_x = k.inner_radius_minus_outer_radius - a1*k.sin_rail_angle  # rod 1
-        rod_1_x = x - pivot_1_x
-        pivot_1_z = -a1*k.cos_rail_angle  # rod 1
+        a1 = root(radicand_a1)*sigma_carriage_1 - middle_a1
+        rod_1_x = span_1_x + a1*k.sin_rail_angle
+        pivot_1_z = -a1*k.cos_rail_angle
         rod_1_z = z - pivot_1_z
         part_of_middle_a2 = cos_rail_angle_times_z - k.half_sin_rail_angle*span_2_x
         middle_a2 = -part_of_middle_a2 - k.part_of_pivot_2_y*span_2_y
-        a2 = middle_a2 + root(root_square_a2)*sigma_carriage_2
-        pivot_2_x = k.part_of_pivot_2_x + a2*k.half_sin_rail_angle  # rod 2
-        rod_2_x = x - pivot_2_x
-        pivot_2_y = k.part_of_pivot_2_y_2 - a2*k.part_of_pivot_2_y  # rod 2
-        rod_2_y = y - pivot_2_y
-        pivot_2_z = -a2*k.cos_rail_angle  # rod 2
+        a2 = middle_a2 + root(radicand_a2)*sigma_carriage_2
+        rod_2_x = span_2_x - a2*k.half_sin_rail_angle
+        rod_2_y = span_2_y + a2*k.part_of_pivot_2_y
+        pivot_2_z = -a2*k.cos_rail_angle
         rod_2_z = z - pivot_2_z
         middle_a3 = k.part_of_pivot_2_y*span_3_y - part_of_middle_a2
-        a3 = middle_a3 + root(root_square_a3)*sigma_carriage_3
-        pivot_3_x = k.part_of_pivot_2_x + a3*k.half_sin_rail_angle  # rod 3
-        rod_3_x = x - pivot_3_x
-        pivot_3_y = a3*k.part_of_pivot_2_y - k.part_of_pivot_2_y_2  # rod 3
-        rod_3_y = y - pivot_3_y
-        pivot_3_z = -a3*k.cos_rail_angle  # rod 3
+        a3 = middle_a3 + root(radicand_a3)*sigma_carriage_3
+        rod_3_x = span_2_x - a3*k.half_sin_rail_angle
+        rod_3_y = span_3_y - a3*k.part_of_pivot_2_y
+        pivot_3_z = -a3*k.cos_rail_angle
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            -k.part_of_type2_rods_coplanar
+            k.part_of_type2_rods_coplanar
             *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-                + (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
+                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
+                + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*y
             )
         )
         part = k.root_of_3_times_half_by_arm_length*x
@@ -175,11 +181,11 @@ class ArrayPrograms(Programs):
         axis_a2 = a2 + k.offset_a2
         axis_a3 = a3 + k.offset_a3
         # rod 1 cannot reach
-        require(status, root_square_a1 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
+        require(status, radicand_a1 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
         # rod 2 cannot reach
-        require(status, root_square_a2 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
+        require(status, radicand_a2 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
         # rod 3 cannot reach
-        require(status, root_square_a3 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
+        require(status, radicand_a3 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         # ball joint of rod 1

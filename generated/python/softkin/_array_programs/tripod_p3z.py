@@ -25,7 +25,7 @@ class ArrayPrograms(Programs):
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
@@ -33,43 +33,48 @@ class ArrayPrograms(Programs):
         )
         a1 = axis_a1 - k.offset_a1
         a2 = axis_a2 - k.offset_a2
-        apart_2_z = a2 - a1
+        centre_1_to_2_z = a2 - a1
         a3 = axis_a3 - k.offset_a3
-        apart_3_z = a3 - a1
-        normal_x = k.apart_2_y*apart_3_z - apart_2_z*k.apart_3_y
-        normal_y = apart_2_z*k.apart_3_x - k.apart_2_x*apart_3_z
-        normal_square = k.normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
-        share_2 = k.part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
-        share_3 = k.part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        centre_1_to_3_z = a3 - a1
+        # normal to the plane of the centres
+        normal_x = k.centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*k.centre_1_to_3_y
+        normal_y = centre_1_to_2_z*k.centre_1_to_3_x - k.centre_1_to_2_x*centre_1_to_3_z
+        normal_square = k.normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = k.part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = k.part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
         normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
         one_by_normal_square = 1.0/normal_divisor
+        # foot of the perpendicular, seen from centre 1
         foot_x = (
             one_by_normal_square
             *(
-                (k.apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
-                + (apart_2_z*normal_y - k.apart_2_y_times_normal_z)*share_3
+                (k.centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
+                + (centre_1_to_2_z*normal_y - k.centre_1_to_2_y_times_normal_z)*projection_3
             )
         )
         foot_y = (
             one_by_normal_square
             *(
-                (apart_3_z*normal_x - k.apart_3_x_times_normal_z)*share_2
-                + (k.apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
+                (centre_1_to_3_z*normal_x - k.centre_1_to_3_x_times_normal_z)*projection_2
+                + (k.centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
             )
         )
         foot_z = (
             one_by_normal_square
             *(
-                (k.apart_3_x*normal_y - k.apart_3_y*normal_x)*share_2
-                + (k.apart_2_y*normal_x - k.apart_2_x*normal_y)*share_3
+                (k.centre_1_to_3_x*normal_y - k.centre_1_to_3_y*normal_x)*projection_2
+                + (k.centre_1_to_2_y*normal_x - k.centre_1_to_2_x*normal_y)*projection_3
             )
         )
-        # the square of the height over the centres
+        # square of the height over the plane of the centres
         height_square = k.arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
-        rise = root(height_square*one_by_normal_square)*k.assembly_sign
-        x = foot_x + k.pivot_1_x + normal_x*rise
-        y = foot_y + k.pivot_1_y + normal_y*rise
-        z = a1 + foot_z + k.normal_z*rise
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square*one_by_normal_square)*k.assembly_sign
+        x = foot_x + k.pivot_1_x + height_by_normal*normal_x
+        y = foot_y + k.pivot_1_y + height_by_normal*normal_y
+        z = a1 + foot_z + height_by_normal*k.normal_z
         branch_carriage_1 = (a1 - z)*k.one_by_arm_length
         branch_carriage_2 = (a2 - z)*k.one_by_arm_length
         branch_carriage_3 = (a3 - z)*k.one_by_arm_length
@@ -97,48 +102,45 @@ class ArrayPrograms(Programs):
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        span_1_x = x - k.part_of_span_1_x  # rod 1
-        span_1_y = y - k.part_of_span_1_y  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = k.arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
-        span_2_x = x - k.part_of_span_2_x  # rod 2
-        span_2_y = y - k.part_of_span_2_y  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = k.arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
-        span_3_x = x - k.part_of_span_3_x  # rod 3
-        span_3_y = y - k.part_of_span_3_y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = k.arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
+        span_1_x = x - k.part_of_span_1_x  # rod 1: known part of its vector
+        span_1_y = y - k.part_of_span_1_y
+        radicand_a1 = k.arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y  # quadratic equation for a1: rod 1
+        span_2_x = x - k.part_of_span_2_x  # rod 2: known part of its vector
+        span_2_y = y - k.part_of_span_2_y
+        radicand_a2 = k.arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y  # quadratic equation for a2: rod 2
+        span_3_x = x - k.part_of_span_3_x  # rod 3: known part of its vector
+        span_3_y = y - k.part_of_span_3_y
+        radicand_a3 = k.arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y  # quadratic equation for a3: rod 3
         rod_1_x = x - k.pivot_1_x
         rod_1_y = y - k.pivot_1_y
-        a1 = z + root(root_square_a1)*sigma_carriage_1
+        a1 = z + root(radicand_a1)*sigma_carriage_1
         rod_1_z = z - a1
         rod_2_x = x - k.pivot_2_x
         rod_2_y = y - k.pivot_2_y
-        a2 = z + root(root_square_a2)*sigma_carriage_2
+        a2 = z + root(radicand_a2)*sigma_carriage_2
         rod_2_z = z - a2
         rod_3_x = x - k.pivot_3_x
         rod_3_y = y - k.pivot_3_y
-        a3 = z + root(root_square_a3)*sigma_carriage_3
+        a3 = z + root(radicand_a3)*sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
-            -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z - rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y)
-                - (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
+            -k.part_of_type2_rods_coplanar
+            *(
+                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
+                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
             )
-            *k.part_of_type2_rods_coplanar
         )
         axis_a1 = a1 + k.offset_a1
         axis_a2 = a2 + k.offset_a2
         axis_a3 = a3 + k.offset_a3
         # rod 1 cannot reach
-        require(status, root_square_a1 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
+        require(status, radicand_a1 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
         # rod 2 cannot reach
-        require(status, root_square_a2 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
+        require(status, radicand_a2 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
         # rod 3 cannot reach
-        require(status, root_square_a3 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
+        require(status, radicand_a3 >= -k.arm_length_squared_times_rounding, Status.UNREACHABLE)
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3), status

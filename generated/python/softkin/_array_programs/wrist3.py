@@ -38,7 +38,7 @@ class ArrayPrograms(OrientationPrograms):
         axis_a, axis_b, axis_c = axes
         k = self.constants
         status = passed(axes)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_c) <= 1e9),
@@ -85,13 +85,13 @@ class ArrayPrograms(OrientationPrograms):
         ref_a, ref_b, ref_c = reference
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         require(
             status,
             (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9),
             Status.BAD_INPUT,
         )
-        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
+        radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
             free_c = (ref_c - k.offset_c)*DEGREE
@@ -101,7 +101,7 @@ class ArrayPrograms(OrientationPrograms):
 
         direction_x_c = sigma_hand*r31
         direction_y_c = -sigma_hand*r32
-        # c: polar angle in the r31 and r32 equations; its reference where it is free
+        # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
         direction_x_c, direction_y_c = elsewhere(
             radius_c > 1e-11,
             (direction_x_c, direction_y_c),
@@ -110,16 +110,17 @@ class ArrayPrograms(OrientationPrograms):
         )
         scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
         direction_y_a = -direction_x_c*r12 - direction_y_c*r11
-        open_a = select(k.single_a, k.mid_a, ref_a)  # A: where its turn is open
+        open_a = select(k.single_a, k.mid_a, ref_a)  # A: without a commanded turn, the value nearest to this
         near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
-        axis_a = nearest_period(k.offset_a + degrees(direction_y_a, scaled_r22_before_c), near_a)  # A: its turn
+        # A: whole turns added
+        axis_a = nearest_period(k.offset_a + degrees(direction_y_a, scaled_r22_before_c), near_a)
         c_radius_of_b = sigma_hand*radius_c
-        open_b = select(k.single_b, k.mid_b, ref_b)  # B: where its turn is open
+        open_b = select(k.single_b, k.mid_b, ref_b)  # B: without a commanded turn, the value nearest to this
         near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
-        axis_b = nearest_period(k.offset_b + degrees(c_radius_of_b, r33), near_b)  # B: its turn
-        open_c = select(k.single_c, k.mid_c, ref_c)  # C: where its turn is open
+        axis_b = nearest_period(k.offset_b + degrees(c_radius_of_b, r33), near_b)  # B: whole turns added
+        open_c = select(k.single_c, k.mid_c, ref_c)  # C: without a commanded turn, the value nearest to this
         near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
-        axis_c = nearest_period(k.offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
+        axis_c = nearest_period(k.offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: whole turns added
         return (axis_a, axis_b, axis_c), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -69,21 +69,22 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
             and -1e9 <= ref_a6 <= 1e9
         ):
             return 8*(2,)
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)
         # near a fold
         if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
             ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
@@ -91,7 +92,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(3,)
             ahead_q1_before_q1_for_q3 = 0.0
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d4_times_wrist_y = d4*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
@@ -110,12 +111,12 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
         minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_left - r21*cos_q1_before_q1_for_q3_left
         r22_from_q1 = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
-        # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
-        # q5: linear pair in the q6 radius and r32 equations
+        # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
@@ -134,13 +135,13 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
         wrist_y_from_q1_fixed = z - d6*r33 - d1
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # kept where the rest can be reached
-        # what the unknown links must span
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
             sin_q6 = sin_q6_before_q6_of_q3_down
@@ -156,7 +157,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
@@ -171,7 +172,7 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
@@ -211,7 +212,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
                         (
@@ -224,7 +225,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
@@ -235,17 +236,19 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3_down = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        cos_q3_down = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3_down + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -255,31 +258,31 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_up_down = free_a2
             angle_q2_down_down = free_a2
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_left_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: its turn
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
+        axis_a2_left_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left_up_down - open_a2 < 179.999999999:
             axis_a2_left_up_down = nearest_period(axis_a2_left_up_down, open_a2)
         angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3_down + 0.0)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
-        axis_a3_left_up_down = offset_a3 + angle_q3_down/DEGREE  # A3: its turn
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
+        axis_a3_left_up_down = offset_a3 + angle_q3_down/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_left_up_down - open_a3 < 179.999999999:
             axis_a3_left_up_down = nearest_period(axis_a3_left_up_down, open_a3)
         angle_with_q4_down = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
-        # q4: what the sum q234 leaves; A4: its turn
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)/DEGREE
         if not -180.000000001 <= axis_a4_left_up_down - open_a4 < 179.999999999:
             axis_a4_left_up_down = nearest_period(axis_a4_left_up_down, open_a4)
-        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
-        axis_a5_left_down = offset_a5 + arctan2(radius_q6, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
+        axis_a5_left_down = offset_a5 + arctan2(radius_q6, cos_q5 + 0.0)/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5_left_down - open_a5 < 179.999999999:
             axis_a5_left_down = nearest_period(axis_a5_left_down, open_a5)
-        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
-        axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
+        axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: whole turns added
         if not -180.000000001 <= axis_a6_left_down - open_a6 < 179.999999999:
             axis_a6_left_down = nearest_period(axis_a6_left_down, open_a6)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        # A1: whole turns added
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
@@ -293,12 +296,12 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
         wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # kept where the rest can be reached
+        # moved to where q3 has a solution, if that changes the pose by rounding only
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
@@ -310,7 +313,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
@@ -325,7 +328,7 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
@@ -365,7 +368,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
                         (
@@ -378,7 +381,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
@@ -386,20 +389,24 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
-        wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3_up = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        cos_q3_up = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3_up + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -409,41 +416,41 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_up_up = free_a2
             angle_q2_down_up = free_a2
-        axis_a2_left_up_up = offset_a2 + angle_q2_up_up/DEGREE  # A2: its turn
+        axis_a2_left_up_up = offset_a2 + angle_q2_up_up/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left_up_up - open_a2 < 179.999999999:
             axis_a2_left_up_up = nearest_period(axis_a2_left_up_up, open_a2)
         angle_q3_up = arctan2(sin_q3 + 0.0, cos_q3_up + 0.0)
-        axis_a3_left_up_up = offset_a3 + angle_q3_up/DEGREE  # A3: its turn
+        axis_a3_left_up_up = offset_a3 + angle_q3_up/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_left_up_up - open_a3 < 179.999999999:
             axis_a3_left_up_up = nearest_period(axis_a3_left_up_up, open_a3)
         angle_with_q4_up = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)/DEGREE
         if not -180.000000001 <= axis_a4_left_up_up - open_a4 < 179.999999999:
             axis_a4_left_up_up = nearest_period(axis_a4_left_up_up, open_a4)
-        axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down  # A5: its turn
+        axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down  # A5: whole turns added
         if not -180.000000001 <= axis_a5_left_up - open_a5 < 179.999999999:
             axis_a5_left_up = nearest_period(axis_a5_left_up, open_a5)
-        axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
+        axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: whole turns added
         if not -180.000000001 <= axis_a6_left_up - open_a6 < 179.999999999:
             axis_a6_left_up = nearest_period(axis_a6_left_up, open_a6)
-        axis_a2_left_down_down = offset_a2 + angle_q2_down_down/DEGREE  # A2: its turn
+        axis_a2_left_down_down = offset_a2 + angle_q2_down_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left_down_down - open_a2 < 179.999999999:
             axis_a2_left_down_down = nearest_period(axis_a2_left_down_down, open_a2)
-        axis_a3_left_down_down = offset_a3 - angle_q3_down/DEGREE  # A3: its turn
+        axis_a3_left_down_down = offset_a3 - angle_q3_down/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_left_down_down - open_a3 < 179.999999999:
             axis_a3_left_down_down = nearest_period(axis_a3_left_down_down, open_a3)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_down_down)/DEGREE
         if not -180.000000001 <= axis_a4_left_down_down - open_a4 < 179.999999999:
             axis_a4_left_down_down = nearest_period(axis_a4_left_down_down, open_a4)
-        axis_a2_left_down_up = offset_a2 + angle_q2_down_up/DEGREE  # A2: its turn
+        axis_a2_left_down_up = offset_a2 + angle_q2_down_up/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left_down_up - open_a2 < 179.999999999:
             axis_a2_left_down_up = nearest_period(axis_a2_left_down_up, open_a2)
-        axis_a3_left_down_up = offset_a3 - angle_q3_up/DEGREE  # A3: its turn
+        axis_a3_left_down_up = offset_a3 - angle_q3_up/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_left_down_up - open_a3 < 179.999999999:
             axis_a3_left_down_up = nearest_period(axis_a3_left_down_up, open_a3)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_down_up)/DEGREE
         if not -180.000000001 <= axis_a4_left_down_up - open_a4 < 179.999999999:
             axis_a4_left_down_up = nearest_period(axis_a4_left_down_up, open_a4)
@@ -493,12 +500,12 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_down_up = 3
         minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_right - r21*cos_q1_before_q1_for_q3_right
         r22_from_q1 = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
-        # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
-        # q5: linear pair in the q6 radius and r32 equations
+        # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
@@ -516,13 +523,13 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # kept where the rest can be reached
-        # what the unknown links must span
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
             sin_q6 = sin_q6_before_q6_of_q3_down
@@ -538,7 +545,7 @@ def unrolled(k: Constants) -> Unrolled:
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
@@ -553,7 +560,7 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
@@ -593,7 +600,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
                         (
@@ -606,7 +613,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
@@ -617,17 +624,19 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3_down = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        cos_q3_down = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3_down + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -637,25 +646,25 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_up_down = free_a2
             angle_q2_down_down = free_a2
-        axis_a2_right_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: its turn
+        axis_a2_right_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right_up_down - open_a2 < 179.999999999:
             axis_a2_right_up_down = nearest_period(axis_a2_right_up_down, open_a2)
         angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3_down + 0.0)
-        axis_a3_right_up_down = offset_a3 + angle_q3_down/DEGREE  # A3: its turn
+        axis_a3_right_up_down = offset_a3 + angle_q3_down/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_right_up_down - open_a3 < 179.999999999:
             axis_a3_right_up_down = nearest_period(axis_a3_right_up_down, open_a3)
         angle_with_q4_down = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)/DEGREE
         if not -180.000000001 <= axis_a4_right_up_down - open_a4 < 179.999999999:
             axis_a4_right_up_down = nearest_period(axis_a4_right_up_down, open_a4)
-        axis_a5_right_down = offset_a5 + arctan2(radius_q6, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        axis_a5_right_down = offset_a5 + arctan2(radius_q6, cos_q5 + 0.0)/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5_right_down - open_a5 < 179.999999999:
             axis_a5_right_down = nearest_period(axis_a5_right_down, open_a5)
-        axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
+        axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: whole turns added
         if not -180.000000001 <= axis_a6_right_down - open_a6 < 179.999999999:
             axis_a6_right_down = nearest_period(axis_a6_right_down, open_a6)
-        # A1: its turn
+        # A1: whole turns added
         axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
@@ -669,12 +678,12 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # kept where the rest can be reached
+        # moved to where q3 has a solution, if that changes the pose by rounding only
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
@@ -686,7 +695,7 @@ def unrolled(k: Constants) -> Unrolled:
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
@@ -701,7 +710,7 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
@@ -741,7 +750,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
                         (
@@ -754,7 +763,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
@@ -762,20 +771,24 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3_up = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        cos_q3_up = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3_up + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -785,41 +798,41 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_up_up = free_a2
             angle_q2_down_up = free_a2
-        axis_a2_right_up_up = offset_a2 + angle_q2_up_up/DEGREE  # A2: its turn
+        axis_a2_right_up_up = offset_a2 + angle_q2_up_up/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right_up_up - open_a2 < 179.999999999:
             axis_a2_right_up_up = nearest_period(axis_a2_right_up_up, open_a2)
         angle_q3_up = arctan2(sin_q3 + 0.0, cos_q3_up + 0.0)
-        axis_a3_right_up_up = offset_a3 + angle_q3_up/DEGREE  # A3: its turn
+        axis_a3_right_up_up = offset_a3 + angle_q3_up/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_right_up_up - open_a3 < 179.999999999:
             axis_a3_right_up_up = nearest_period(axis_a3_right_up_up, open_a3)
         angle_with_q4_up = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)/DEGREE
         if not -180.000000001 <= axis_a4_right_up_up - open_a4 < 179.999999999:
             axis_a4_right_up_up = nearest_period(axis_a4_right_up_up, open_a4)
-        axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down  # A5: its turn
+        axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down  # A5: whole turns added
         if not -180.000000001 <= axis_a5_right_up - open_a5 < 179.999999999:
             axis_a5_right_up = nearest_period(axis_a5_right_up, open_a5)
-        axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
+        axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: whole turns added
         if not -180.000000001 <= axis_a6_right_up - open_a6 < 179.999999999:
             axis_a6_right_up = nearest_period(axis_a6_right_up, open_a6)
-        axis_a2_right_down_down = offset_a2 + angle_q2_down_down/DEGREE  # A2: its turn
+        axis_a2_right_down_down = offset_a2 + angle_q2_down_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right_down_down - open_a2 < 179.999999999:
             axis_a2_right_down_down = nearest_period(axis_a2_right_down_down, open_a2)
-        axis_a3_right_down_down = offset_a3 - angle_q3_down/DEGREE  # A3: its turn
+        axis_a3_right_down_down = offset_a3 - angle_q3_down/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_right_down_down - open_a3 < 179.999999999:
             axis_a3_right_down_down = nearest_period(axis_a3_right_down_down, open_a3)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_down_down)/DEGREE
         if not -180.000000001 <= axis_a4_right_down_down - open_a4 < 179.999999999:
             axis_a4_right_down_down = nearest_period(axis_a4_right_down_down, open_a4)
-        axis_a2_right_down_up = offset_a2 + angle_q2_down_up/DEGREE  # A2: its turn
+        axis_a2_right_down_up = offset_a2 + angle_q2_down_up/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right_down_up - open_a2 < 179.999999999:
             axis_a2_right_down_up = nearest_period(axis_a2_right_down_up, open_a2)
-        axis_a3_right_down_up = offset_a3 - angle_q3_up/DEGREE  # A3: its turn
+        axis_a3_right_down_up = offset_a3 - angle_q3_up/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_right_down_up - open_a3 < 179.999999999:
             axis_a3_right_down_up = nearest_period(axis_a3_right_down_up, open_a3)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
         axis_a4_right_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_down_up)/DEGREE
         if not -180.000000001 <= axis_a4_right_down_up - open_a4 < 179.999999999:
             axis_a4_right_down_up = nearest_period(axis_a4_right_down_up, open_a4)
@@ -938,14 +951,15 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         ref_a1, ref_a2, _, _, _, ref_a6 = 6*(0.0,) if reference is None else reference
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)
         # near a fold
         if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
             ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
@@ -953,7 +967,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(None,)
             ahead_q1_before_q1_for_q3 = 0.0
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d4_times_wrist_y = d4*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
@@ -972,12 +986,12 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
         minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_left - r21*cos_q1_before_q1_for_q3_left
         r22_from_q1 = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
-        # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
-        # q5: linear pair in the q6 radius and r32 equations
+        # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
@@ -996,13 +1010,13 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
         wrist_y_from_q1_fixed = z - d6*r33 - d1
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # kept where the rest can be reached
-        # what the unknown links must span
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
             sin_q6 = sin_q6_before_q6_of_q3_down
@@ -1018,7 +1032,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
@@ -1033,7 +1047,7 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
@@ -1073,7 +1087,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
                         (
@@ -1086,7 +1100,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
@@ -1097,19 +1111,21 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         refusal_left_down = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*RADIAN
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1122,7 +1138,7 @@ def unrolled(k: Constants) -> Unrolled:
         angle_q3_down = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_left_up_down = angle_q3_down*RADIAN
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        # q4: what the sum q234 leaves
+        # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_left_up_down - angle_q3_down)*RADIAN
         axis_a5_left_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN
         axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
@@ -1136,12 +1152,12 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
         wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # kept where the rest can be reached
+        # moved to where q3 has a solution, if that changes the pose by rounding only
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1153,7 +1169,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1168,7 +1184,7 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
@@ -1208,7 +1224,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
                         (
@@ -1221,7 +1237,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1229,21 +1245,25 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
-        wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         refusal_left_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1256,22 +1276,22 @@ def unrolled(k: Constants) -> Unrolled:
         angle_q3_up = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_left_up_up = angle_q3_up*RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        # q4: what the sum q234 leaves
+        # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_left_up_up - angle_q3_up)*RADIAN
         axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down
         axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
-        # q4: what the sum q234 leaves
+        # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_left_down_down)*RADIAN
-        # q4: what the sum q234 leaves
+        # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_left_down_up)*RADIAN
         minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_right - r21*cos_q1_before_q1_for_q3_right
         r22_from_q1 = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
-        # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
-        # q5: linear pair in the q6 radius and r32 equations
+        # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
@@ -1289,13 +1309,13 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # kept where the rest can be reached
-        # what the unknown links must span
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
             sin_q6 = sin_q6_before_q6_of_q3_down
@@ -1311,7 +1331,7 @@ def unrolled(k: Constants) -> Unrolled:
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
@@ -1326,7 +1346,7 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
@@ -1366,7 +1386,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
                         (
@@ -1379,7 +1399,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_down
                     sin_q6 = sin_q6_before_q6_of_q3_down
@@ -1390,19 +1410,21 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         refusal_right_down = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*RADIAN
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1415,7 +1437,7 @@ def unrolled(k: Constants) -> Unrolled:
         angle_q3_down = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_right_up_down = angle_q3_down*RADIAN
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        # q4: what the sum q234 leaves
+        # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_right_up_down - angle_q3_down)*RADIAN
         axis_a5_right_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN
         axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
@@ -1429,12 +1451,12 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # kept where the rest can be reached
+        # moved to where q3 has a solution, if that changes the pose by rounding only
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1446,7 +1468,7 @@ def unrolled(k: Constants) -> Unrolled:
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1461,7 +1483,7 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
@@ -1501,7 +1523,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
                         (
@@ -1514,7 +1536,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3_up
                     sin_q6 = sin_q6_before_q6_of_q3_up
@@ -1522,21 +1544,25 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         refusal_right_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1549,13 +1575,13 @@ def unrolled(k: Constants) -> Unrolled:
         angle_q3_up = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_right_up_up = angle_q3_up*RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        # q4: what the sum q234 leaves
+        # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_right_up_up - angle_q3_up)*RADIAN
         axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down
         axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
-        # q4: what the sum q234 leaves
+        # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_right_down_down)*RADIAN
-        # q4: what the sum q234 leaves
+        # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_right_down_up)*RADIAN
         return (
             (
@@ -1632,14 +1658,15 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         sigma_shoulder, sigma_elbow, sigma_wrist = signs
         ref_a1, ref_a2, _, _, _, ref_a6 = 6*(0.0,) if reference is None else reference
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)
         # near a fold
         if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
             ahead_q1_before_q1_for_q3 = -sqrt(ahead_squared_q1)*sigma_shoulder
         else:
@@ -1647,7 +1674,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return None
             ahead_q1_before_q1_for_q3 = 0.0
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1*distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/divisor_q1
@@ -1656,16 +1683,16 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
-        # q5: linear pair in the q6 radius and r32 equations
+        # cosine and sine of q5 from the q6 radius and r32 equations
         cos_q5 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3
         minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3 - r21*cos_q1_before_q1_for_q3
         r22_from_q1 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
-        # q6: direction and distance of a point
+        # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         q6_radius_of_q5 = sigma_wrist*radius_q6
-        # its reference where it is free
+        # in the singularity: the angle of the reference
         if radius_q6 > 1e-11:
-            along_q6 = sigma_wrist*minus_r21_from_q1  # q6: polar angle in the r31 and r32 equations
+            along_q6 = sigma_wrist*minus_r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6/radius_q6
             sin_q6_before_q6_of_q3 = (sigma_wrist*r22_from_q1)/radius_q6
         else:
@@ -1679,13 +1706,13 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_z = z - d6*r33
         r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
         wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
-        # a later step needs this of q6: no larger in size than
+        # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared_2
         )
-        # kept where the rest can be reached
-        # what the unknown links must span
+        # moved to where q3 has a solution, if that changes the pose by rounding only
+        # coordinate of the point that the remaining links must reach
         if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
@@ -1694,7 +1721,7 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            # kept where the rest can be reached
+            # moved to where q3 has a solution, if that changes the pose by rounding only
             if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
@@ -1704,7 +1731,7 @@ def unrolled(k: Constants) -> Unrolled:
                 along_q6_of_q3 = 2.0*(d5*r32)*wrist_y_from_q1_fixed - 2.0*(d5*r31*cos_q5)*wrist_x_from_q1_fixed
                 across_q6_of_q3 = 2.0*(d5*r32*cos_q5)*wrist_x_from_q1_fixed + 2.0*(d5*r31)*wrist_y_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-                # the arc: cosines from its centre
+                # feasible arc: cosines of its ends
                 if swing_q6_of_q3 > size_q1_for_q3_times_rounding_2:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3 + along_q6_of_q3*cos_q6_before_q6_of_q3 - value_q6_of_q3
@@ -1744,7 +1771,7 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                # what the motion changes of the pose
+                # change of the pose by this motion
                 cost_q6_of_q3 = (
                     sqrt(
                         (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
@@ -1753,7 +1780,7 @@ def unrolled(k: Constants) -> Unrolled:
                     *radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # kept where the rest can be reached
+                # moved to where q3 has a solution, if that changes the pose by rounding only
                 if stays_q6_of_q3:
                     cos_q6 = cos_q6_before_q6_of_q3
                     sin_q6 = sin_q6_before_q6_of_q3
@@ -1764,24 +1791,26 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3_2 + reach)*(a2_plus_a3_2 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3_2)*(a2_minus_a3_2 + reach)  # 1 + cosine, times the scale
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if abs(sum_of_cos_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
             return None
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(sum_q3)
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle_2:
             angle_q2 = arctan2(wrist_y_from_q1, wrist_x_from_q1) - arctan2(a3*sin_q3, a2 + a3*cos_q3)
         else:
             angle_q2 = (ref_a2 - offset_a2)*DEGREE
         angle_q3 = arctan2(sin_q3, cos_q3)
-        # q4: what the sum q234 leaves
+        # q4 from the sum q234 of angles about parallel axes
         axis_a4 = offset_a4 + (arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6) - angle_q2 - angle_q3)*RADIAN
         if no_offsets:
             return (

@@ -69,21 +69,22 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
             and -1e9 <= ref_a6 <= 1e9
         ):
             return 8*(2,)
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         # near a fold
         if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
             ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
@@ -91,7 +92,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(3,)
             ahead_q1_before_q1_for_q3 = 0.0
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_wrist_y = d3*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
@@ -109,20 +110,23 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         r13_from_q1 = r13*cos_q1_before_q1_for_q3_front + r23*sin_q1_before_q1_for_q3_front
-        wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d6*r33 - d1  # coordinate of the point that the remaining links must reach
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3 + 0.0, a2 + effective_q3*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
@@ -139,9 +143,9 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         r23_from_q1 = r23*cos_q1_before_q1_for_q3_front - r13*sin_q1_before_q1_for_q3_front
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_q4 > 1e-11:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -151,14 +155,14 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_q4_down = sin(free_a4)
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
-        # A4: its turn
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
+        # A4: whole turns added
         axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_front_down_down - open_a4 < 179.999999999:
             axis_a4_front_down_down = nearest_period(axis_a4_front_down_down, open_a4)
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: where its turn is open
-        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
+        open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
+        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5_front_down_down - open_a5 < 179.999999999:
             axis_a5_front_down_down = nearest_period(axis_a5_front_down_down, open_a5)
         r21_from_q1 = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front
@@ -169,23 +173,23 @@ def unrolled(k: Constants) -> Unrolled:
         r12_from_q1 = r12*cos_q1_before_q1_for_q3_front + r22*sin_q1_before_q1_for_q3_front
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
-        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: where its turn is open
-        # A6: its turn
+        open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
+        # A6: whole turns added
         axis_a6_front_down_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
         )
         if not -180.000000001 <= axis_a6_front_down_down - open_a6 < 179.999999999:
             axis_a6_front_down_down = nearest_period(axis_a6_front_down_down, open_a6)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
+        axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
             axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
-        axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
+        axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
             axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        # A1: whole turns added
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
             axis_a1_front = nearest_period(axis_a1_front, open_a1)
@@ -201,13 +205,13 @@ def unrolled(k: Constants) -> Unrolled:
                     direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123 + 0.0,
                 )/DEGREE
             )
-        axis_a4_front_down_up = direction_of_axis_a4  # A4: its turn
+        axis_a4_front_down_up = direction_of_axis_a4  # A4: whole turns added
         if not -180.000000001 <= axis_a4_front_down_up - open_a4 < 179.999999999:
             axis_a4_front_down_up = nearest_period(axis_a4_front_down_up, open_a4)
-        axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: its turn
+        axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: whole turns added
         if not -180.000000001 <= axis_a5_front_down_up - open_a5 < 179.999999999:
             axis_a5_front_down_up = nearest_period(axis_a5_front_down_up, open_a5)
-        axis_a6_front_down_up = direction_of_axis_a6  # A6: its turn
+        axis_a6_front_down_up = direction_of_axis_a6  # A6: whole turns added
         if not -180.000000001 <= axis_a6_front_down_up - open_a6 < 179.999999999:
             axis_a6_front_down_up = nearest_period(axis_a6_front_down_up, open_a6)
         angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
@@ -215,9 +219,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_q4 > 1e-11:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -227,28 +231,28 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_q4_down = sin(free_a4)
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_front_up_down - open_a4 < 179.999999999:
             axis_a4_front_up_down = nearest_period(axis_a4_front_up_down, open_a4)
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
+        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5_front_up_down - open_a5 < 179.999999999:
             axis_a5_front_up_down = nearest_period(axis_a5_front_up_down, open_a5)
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
         minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_front_up_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
         )
         if not -180.000000001 <= axis_a6_front_up_down - open_a6 < 179.999999999:
             axis_a6_front_up_down = nearest_period(axis_a6_front_up_down, open_a6)
-        axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
+        axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_front_up - open_a2 < 179.999999999:
             axis_a2_front_up = nearest_period(axis_a2_front_up, open_a2)
-        axis_a3_front_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
+        axis_a3_front_up = offset_a3 + angle_q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
             axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
         if radius_q4 > 1e-11:
@@ -263,13 +267,13 @@ def unrolled(k: Constants) -> Unrolled:
                     direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123 + 0.0,
                 )/DEGREE
             )
-        axis_a4_front_up_up = direction_of_axis_a4  # A4: its turn
+        axis_a4_front_up_up = direction_of_axis_a4  # A4: whole turns added
         if not -180.000000001 <= axis_a4_front_up_up - open_a4 < 179.999999999:
             axis_a4_front_up_up = nearest_period(axis_a4_front_up_up, open_a4)
-        axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: its turn
+        axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: whole turns added
         if not -180.000000001 <= axis_a5_front_up_up - open_a5 < 179.999999999:
             axis_a5_front_up_up = nearest_period(axis_a5_front_up_up, open_a5)
-        axis_a6_front_up_up = direction_of_axis_a6  # A6: its turn
+        axis_a6_front_up_up = direction_of_axis_a6  # A6: whole turns added
         if not -180.000000001 <= axis_a6_front_up_up - open_a6 < 179.999999999:
             axis_a6_front_up_up = nearest_period(axis_a6_front_up_up, open_a6)
         if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005:
@@ -317,19 +321,22 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_front_up_down = 3
             refusal_front_up_up = 3
         r13_from_q1 = r13*cos_q1_before_q1_for_q3_back + r23*sin_q1_before_q1_for_q3_back
-        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3 + 0.0, a2 + effective_q3*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
@@ -346,9 +353,9 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         r23_from_q1 = r23*cos_q1_before_q1_for_q3_back - r13*sin_q1_before_q1_for_q3_back
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_q4 > 1e-11:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -358,12 +365,12 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_q4_down = sin(free_a4)
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_back_down_down - open_a4 < 179.999999999:
             axis_a4_back_down_down = nearest_period(axis_a4_back_down_down, open_a4)
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
+        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5_back_down_down - open_a5 < 179.999999999:
             axis_a5_back_down_down = nearest_period(axis_a5_back_down_down, open_a5)
         r21_from_q1 = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back
@@ -374,19 +381,19 @@ def unrolled(k: Constants) -> Unrolled:
         r12_from_q1 = r12*cos_q1_before_q1_for_q3_back + r22*sin_q1_before_q1_for_q3_back
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_back_down_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
         )
         if not -180.000000001 <= axis_a6_back_down_down - open_a6 < 179.999999999:
             axis_a6_back_down_down = nearest_period(axis_a6_back_down_down, open_a6)
-        axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
+        axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_back_down - open_a2 < 179.999999999:
             axis_a2_back_down = nearest_period(axis_a2_back_down, open_a2)
-        axis_a3_back_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
+        axis_a3_back_down = offset_a3 + angle_q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_back_down - open_a3 < 179.999999999:
             axis_a3_back_down = nearest_period(axis_a3_back_down, open_a3)
-        # A1: its turn
+        # A1: whole turns added
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_back - open_a1 < 179.999999999:
             axis_a1_back = nearest_period(axis_a1_back, open_a1)
@@ -402,13 +409,13 @@ def unrolled(k: Constants) -> Unrolled:
                     direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123 + 0.0,
                 )/DEGREE
             )
-        axis_a4_back_down_up = direction_of_axis_a4  # A4: its turn
+        axis_a4_back_down_up = direction_of_axis_a4  # A4: whole turns added
         if not -180.000000001 <= axis_a4_back_down_up - open_a4 < 179.999999999:
             axis_a4_back_down_up = nearest_period(axis_a4_back_down_up, open_a4)
-        axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: its turn
+        axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: whole turns added
         if not -180.000000001 <= axis_a5_back_down_up - open_a5 < 179.999999999:
             axis_a5_back_down_up = nearest_period(axis_a5_back_down_up, open_a5)
-        axis_a6_back_down_up = direction_of_axis_a6  # A6: its turn
+        axis_a6_back_down_up = direction_of_axis_a6  # A6: whole turns added
         if not -180.000000001 <= axis_a6_back_down_up - open_a6 < 179.999999999:
             axis_a6_back_down_up = nearest_period(axis_a6_back_down_up, open_a6)
         angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
@@ -416,9 +423,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_q4 > 1e-11:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -428,28 +435,28 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_q4_down = sin(free_a4)
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
-        # A4: its turn
+        # A4: whole turns added
         axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_back_up_down - open_a4 < 179.999999999:
             axis_a4_back_up_down = nearest_period(axis_a4_back_up_down, open_a4)
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
+        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5_back_up_down - open_a5 < 179.999999999:
             axis_a5_back_up_down = nearest_period(axis_a5_back_up_down, open_a5)
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
         minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
-        # A6: its turn
+        # A6: whole turns added
         axis_a6_back_up_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
         )
         if not -180.000000001 <= axis_a6_back_up_down - open_a6 < 179.999999999:
             axis_a6_back_up_down = nearest_period(axis_a6_back_up_down, open_a6)
-        axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
+        axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_back_up - open_a2 < 179.999999999:
             axis_a2_back_up = nearest_period(axis_a2_back_up, open_a2)
-        axis_a3_back_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
+        axis_a3_back_up = offset_a3 + angle_q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
             axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
         if radius_q4 > 1e-11:
@@ -464,13 +471,13 @@ def unrolled(k: Constants) -> Unrolled:
                     direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123 + 0.0,
                 )/DEGREE
             )
-        axis_a4_back_up_up = direction_of_axis_a4  # A4: its turn
+        axis_a4_back_up_up = direction_of_axis_a4  # A4: whole turns added
         if not -180.000000001 <= axis_a4_back_up_up - open_a4 < 179.999999999:
             axis_a4_back_up_up = nearest_period(axis_a4_back_up_up, open_a4)
-        axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down  # A5: its turn
+        axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down  # A5: whole turns added
         if not -180.000000001 <= axis_a5_back_up_up - open_a5 < 179.999999999:
             axis_a5_back_up_up = nearest_period(axis_a5_back_up_up, open_a5)
-        axis_a6_back_up_up = direction_of_axis_a6  # A6: its turn
+        axis_a6_back_up_up = direction_of_axis_a6  # A6: whole turns added
         if not -180.000000001 <= axis_a6_back_up_up - open_a6 < 179.999999999:
             axis_a6_back_up_up = nearest_period(axis_a6_back_up_up, open_a6)
         if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005:
@@ -588,14 +595,15 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         ref_a1, ref_a2, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         # near a fold
         if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
             ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
@@ -603,20 +611,23 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(None,)
             ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d6*r33 - d1  # coordinate of the point that the remaining links must reach
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_wrist_y = d3*wrist_y
             ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
@@ -634,8 +645,8 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*RADIAN
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3, a2 + effective_q3*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -655,11 +666,11 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         r23_from_q1 = r23*cos_q1_before_q1_for_q3_front - r13*sin_q1_before_q1_for_q3_front
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         r12_from_q1 = r12*cos_q1_before_q1_for_q3_front + r22*sin_q1_before_q1_for_q3_front
         r11_from_q1 = r11*cos_q1_before_q1_for_q3_front + r21*sin_q1_before_q1_for_q3_front
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -669,7 +680,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -691,7 +702,7 @@ def unrolled(k: Constants) -> Unrolled:
                 minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
         axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         axis_a5_front_down_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN
         axis_a6_front_down_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
@@ -711,9 +722,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -723,7 +734,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -745,7 +756,7 @@ def unrolled(k: Constants) -> Unrolled:
                 minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
         axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         axis_a5_front_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN
         axis_a6_front_up_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
@@ -758,21 +769,24 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6_front_up_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
-        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         refusal_back = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3, a2 + effective_q3*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -792,11 +806,11 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         r23_from_q1 = r23*cos_q1_before_q1_for_q3_back - r13*sin_q1_before_q1_for_q3_back
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         r12_from_q1 = r12*cos_q1_before_q1_for_q3_back + r22*sin_q1_before_q1_for_q3_back
         r11_from_q1 = r11*cos_q1_before_q1_for_q3_back + r21*sin_q1_before_q1_for_q3_back
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -806,7 +820,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -828,7 +842,7 @@ def unrolled(k: Constants) -> Unrolled:
                 minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
         axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         axis_a5_back_down_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN
         axis_a6_back_down_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
@@ -848,9 +862,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -860,7 +874,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -882,7 +896,7 @@ def unrolled(k: Constants) -> Unrolled:
                 minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
         axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         axis_a5_back_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN
         axis_a6_back_up_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
@@ -967,14 +981,15 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         sigma_arm, sigma_elbow, sigma_hand = signs
         ref_a1, ref_a2, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
-        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_x = x - d6*r13  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         # near a fold
         if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
             ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)*sigma_arm
         else:
@@ -982,20 +997,23 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return None
             ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d6*r33 - d1  # coordinate of the point that the remaining links must reach
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1*distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/divisor_q1
@@ -1004,8 +1022,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
             angle_q2 = (
                 arctan2(-effective_q3*sin_swing_q3, a2 + effective_q3*cos_swing_q3)
@@ -1020,9 +1038,9 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         r23_from_q1 = r23*cos_q1_before_q1_for_q3 - r13*sin_q1_before_q1_for_q3
-        # q4: direction and distance of a point
+        # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_q4 > 0.1:
             direction_x_q4 = sigma_hand*minus_r13_from_q123
             direction_y_q4 = sigma_hand*r23_from_q1
@@ -1033,7 +1051,7 @@ def unrolled(k: Constants) -> Unrolled:
                 -sigma_hand*((r11*cos_q1_before_q1_for_q3 + r21*sin_q1_before_q1_for_q3)*cos_q23 + r31*sin_q23)
             )
         else:
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
             if radius_q4 > 1e-11:
                 direction_x_q4 = sigma_hand*minus_r13_from_q123
                 direction_y_q4 = sigma_hand*r23_from_q1
@@ -1049,7 +1067,7 @@ def unrolled(k: Constants) -> Unrolled:
             minus_scaled_r22_from_q1234 = (
                 (r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3)*direction_x_q4 + direction_y_q4*r12_from_q123
             )
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         if no_offsets:
             return (
                 arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*RADIAN, angle_q2*RADIAN, angle_q3*RADIAN,

@@ -53,7 +53,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2 = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
@@ -62,14 +62,14 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(3,)
-        # rod upper
+        # rod upper: known part of its vector
         if swap_xy:
             span_upper_x = y
             span_upper_y = x
         else:
             span_upper_x = x
             span_upper_y = y
-        # effective length that the angle turns
+        # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
         if not (effective_a1 > link_length_1_times_shortest_link_2):
@@ -77,7 +77,7 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
         divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
         divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
-        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod upper: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
         )
@@ -85,37 +85,38 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a1 = (
             (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
         )
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4*(3,)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/divisor_of_cos_a1
         sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
         sin_a1_left = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
-        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
+        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper: centre about which it swings
         sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1_left = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
-        pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
         sin_a1_right = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
-        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
+        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper: centre about which it swings
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1_right = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
-        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
         if swap_xy:
-            centre_1_x_left = pivot_upper_y_left
+            centre_1_x_left = -link_length_1*cos_a1_left
             centre_1_y_left = pivot_upper_x_left
-            centre_1_x_right = pivot_upper_y_right
+            centre_1_x_right = -link_length_1*cos_a1_right
             centre_1_y_right = pivot_upper_x_right
         else:
             centre_1_x_left = pivot_upper_x_left
-            centre_1_y_left = pivot_upper_y_left
+            centre_1_y_left = -link_length_1*cos_a1_left
             centre_1_x_right = pivot_upper_x_right
-            centre_1_y_right = pivot_upper_y_right
-        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear
+            centre_1_y_right = -link_length_1*cos_a1_right
+        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear: known part of its vector
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
         along_a2 = (
             (
@@ -124,7 +125,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2  # rod rear
+        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2
         link_length_2_times_minus_span_rear_y = link_length_2*minus_span_rear_y
         across_a2 = (
             (
@@ -133,11 +134,11 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod rear: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
         )
@@ -145,13 +146,15 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (
             (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
         )
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_left = (
             across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
         )
@@ -160,21 +163,22 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_left = (
             across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
+        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left_left - open_a2 < 179.999999999:
             axis_a2_left_left = nearest_period(axis_a2_left_left, open_a2)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_right = (
             along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
         sin_a2_right = (
             across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
-        axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
+        axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left_right - open_a2 < 179.999999999:
             axis_a2_left_right = nearest_period(axis_a2_left_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
@@ -184,11 +188,11 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_pivot_rear_x = (
                 link_length_1*sin_a1_left + link_length_1_times_link_length_3_by_link_length_2*sin_a1_left
             )
-            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear
+            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear: centre about which it swings
             part_of_pivot_rear_y = (
                 link_length_1*cos_a1_left + link_length_1_times_link_length_3_by_link_length_2*cos_a1_left
             )
-            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left  # rod rear
+            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left
             minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
             minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
@@ -201,8 +205,9 @@ def unrolled(k: Constants) -> Unrolled:
                 ) and (axis_a2_left_left <= highest_a2)
                 else 3
             )
-            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_right  # rod rear
+            # rod rear: centre about which it swings
+            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_right
+            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_right
             minus_centre_2_x_right = (
                 (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
             )
@@ -236,11 +241,11 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod rear: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
         )
@@ -248,26 +253,29 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (
             (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
         )
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
         sin_a2_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
-        axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
+        axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right_left - open_a2 < 179.999999999:
             axis_a2_right_left = nearest_period(axis_a2_right_left, open_a2)
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
         sin_a2_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
-        axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
+        axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right_right - open_a2 < 179.999999999:
             axis_a2_right_right = nearest_period(axis_a2_right_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
@@ -277,11 +285,12 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_pivot_rear_x_left_right = (
                 link_length_1*sin_a1_right + link_length_1_times_link_length_3_by_link_length_2*sin_a1_right
             )
-            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_left  # rod rear
+            # rod rear: centre about which it swings
+            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_left
             part_of_pivot_rear_y_left_right = (
                 link_length_1*cos_a1_right + link_length_1_times_link_length_3_by_link_length_2*cos_a1_right
             )
-            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left  # rod rear
+            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left
             minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
             minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
@@ -294,8 +303,9 @@ def unrolled(k: Constants) -> Unrolled:
                 ) and (axis_a2_right_left <= highest_a2)
                 else 3
             )
-            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right  # rod rear
+            # rod rear: centre about which it swings
+            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right
+            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right
             minus_centre_2_x_right = (
                 (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
             )
@@ -328,14 +338,14 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(None,)
-        # rod upper
+        # rod upper: known part of its vector
         if swap_xy:
             span_upper_x = y
             span_upper_y = x
         else:
             span_upper_x = x
             span_upper_y = y
-        # effective length that the angle turns
+        # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
         if not (effective_a1 > link_length_1_times_shortest_link_2):
@@ -343,7 +353,7 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
         divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
         divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
-        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod upper: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
         )
@@ -351,37 +361,38 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a1 = (
             (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
         )
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4*(None,)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/divisor_of_cos_a1
         sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
         sin_a1_left = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
-        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
+        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper: centre about which it swings
         sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1_left = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
-        pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
         sin_a1_right = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
-        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
+        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper: centre about which it swings
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1_right = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
-        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
         if swap_xy:
-            centre_1_x_left = pivot_upper_y_left
+            centre_1_x_left = -link_length_1*cos_a1_left
             centre_1_y_left = pivot_upper_x_left
-            centre_1_x_right = pivot_upper_y_right
+            centre_1_x_right = -link_length_1*cos_a1_right
             centre_1_y_right = pivot_upper_x_right
         else:
             centre_1_x_left = pivot_upper_x_left
-            centre_1_y_left = pivot_upper_y_left
+            centre_1_y_left = -link_length_1*cos_a1_left
             centre_1_x_right = pivot_upper_x_right
-            centre_1_y_right = pivot_upper_y_right
-        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear
+            centre_1_y_right = -link_length_1*cos_a1_right
+        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear: known part of its vector
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
         along_a2 = (
             (
@@ -390,7 +401,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2  # rod rear
+        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2
         link_length_2_times_minus_span_rear_y = link_length_2*minus_span_rear_y
         across_a2 = (
             (
@@ -399,11 +410,11 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod rear: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
         )
@@ -411,13 +422,15 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (
             (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
         )
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_left_left = (
             across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
         )
@@ -426,6 +439,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_left_left = (
             across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_left_right = (
             along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
@@ -439,19 +453,21 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_pivot_rear_x = (
                 link_length_1*sin_a1_left + link_length_1_times_link_length_3_by_link_length_2*sin_a1_left
             )
-            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left_left  # rod rear
+            # rod rear: centre about which it swings
+            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left_left
             part_of_pivot_rear_y = (
                 link_length_1*cos_a1_left + link_length_1_times_link_length_3_by_link_length_2*cos_a1_left
             )
-            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left_left  # rod rear
+            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left_left
             minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
             minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
                 constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
             )
             refusal_left_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_left_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_left_right  # rod rear
+            # rod rear: centre about which it swings
+            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_left_right
+            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_left_right
             minus_centre_2_x_right = (
                 (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
             )
@@ -480,11 +496,11 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod rear: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
         )
@@ -492,17 +508,20 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (
             (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
         )
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_right_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
         sin_a2_right_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2_right_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
         sin_a2_right_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -512,19 +531,21 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_pivot_rear_x_left_right = (
                 link_length_1*sin_a1_right + link_length_1_times_link_length_3_by_link_length_2*sin_a1_right
             )
-            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_left  # rod rear
+            # rod rear: centre about which it swings
+            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_left
             part_of_pivot_rear_y_left_right = (
                 link_length_1*cos_a1_right + link_length_1_times_link_length_3_by_link_length_2*cos_a1_right
             )
-            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_left  # rod rear
+            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_left
             minus_centre_2_x_left = (pivot_rear_y_left if swap_xy else pivot_rear_x_left)*link_length_2_by_link_length_3_2
             minus_centre_2_y_left = (pivot_rear_x_left if swap_xy else pivot_rear_y_left)*link_length_2_by_link_length_3_2
             type2_arms_aligned_left = (
                 constant_part*((minus_centre_2_y_left + y)*rod_1_x - (minus_centre_2_x_left + x)*rod_1_y)
             )
             refusal_right_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
-            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_right  # rod rear
+            # rod rear: centre about which it swings
+            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_right
+            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_right
             minus_centre_2_x_right = (
                 (pivot_rear_y_right if swap_xy else pivot_rear_x_right)*link_length_2_by_link_length_3_2
             )
@@ -569,20 +590,20 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
-        # rod upper
+        # rod upper: known part of its vector
         if swap_xy:
             span_upper_x = y
             span_upper_y = x
         else:
             span_upper_x = x
             span_upper_y = y
-        # effective length that the angle turns
+        # effective length of the arm that a1 turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
         if not (effective_a1 > link_length_1_times_shortest_link_2):
             return None
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link_2 else 1.0
-        # a1: law of cosines in the rod upper equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod upper: 1 - cosine, times a scale
         one_less_cos_a1 = (
             (divisor_a1 + link_length_1_minus_link_length_2_2)*(divisor_a1 + link_length_1_plus_link_length_2_2)
         )
@@ -590,16 +611,17 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a1 = (
             (link_length_1_plus_link_length_2_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2_2)
         )
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/divisor_of_cos_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear
+        span_rear_x = -(y if swap_xy else x)*link_length_3_by_link_length_2_2  # rod rear: known part of its vector
         along_a2 = (
             (
                 link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1
@@ -607,8 +629,9 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
-        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2  # rod rear
+        minus_span_rear_y = (x if swap_xy else y)*link_length_3_by_link_length_2_2
         across_a2 = (
             (
                 link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
@@ -616,12 +639,12 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > link_length_5_times_shortest_link_2):
             return None
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link_2 else 1.0
-        # a2: law of cosines in the rod rear equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod rear: 1 - cosine, times a scale
         one_less_cos_a2 = (
             (divisor_a2 + link_length_4_plus_link_length_5_2)*(divisor_a2 - link_length_4_minus_link_length_5)
         )
@@ -629,29 +652,29 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (
             (link_length_4_plus_link_length_5_2 - divisor_a2)*(divisor_a2 + link_length_4_minus_link_length_5)
         )
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
         if swap_xy:
-            centre_1_x = pivot_upper_y
+            centre_1_x = -link_length_1*cos_a1
             centre_1_y = pivot_upper_x
         else:
             centre_1_x = pivot_upper_x
-            centre_1_y = pivot_upper_y
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
+            centre_1_y = -link_length_1*cos_a1
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
-        # rod rear
+        # rod rear: centre about which it swings
         pivot_rear_x = (
             link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1 - link_length_5*cos_a2
         )
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
-        # rod rear
         pivot_rear_y = (
             link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1 + link_length_5*sin_a2
         )

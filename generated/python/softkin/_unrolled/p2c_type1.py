@@ -44,7 +44,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2 = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
@@ -53,84 +53,86 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(3,)
-        span_1_x = displacement_minus_tcp_displacement + x  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
+        span_1_x = displacement_minus_tcp_displacement + x  # rod 1: known part of its vector
+        effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return 4*(3,)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
         divisor_a1_minus_outer_arm = divisor_a1 - outer_arm
         divisor_a1_plus_outer_arm = divisor_a1 + outer_arm
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = (divisor_a1_minus_outer_arm + inner_arm)*(divisor_a1_plus_outer_arm + inner_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm - divisor_a1_minus_outer_arm)*(divisor_a1_plus_outer_arm - inner_arm)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4*(3,)
-        span_2_x = x - displacement_minus_tcp_displacement  # rod 2
-        effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
+        span_2_x = x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
+        effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return 4*(3,)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
         divisor_a2_minus_outer_arm = divisor_a2 - outer_arm
         divisor_a2_plus_outer_arm = divisor_a2 + outer_arm
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm - divisor_a2_minus_outer_arm)*(divisor_a2_plus_outer_arm - inner_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2_minus_outer_arm + inner_arm)*(divisor_a2_plus_outer_arm + inner_arm)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 4*(3,)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/divisor_of_cos_a1
         sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2: centre about which it swings
         rod_2_x_outward = x - pivot_2_x
         sin_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*sin_swing_a2/divisor_a2
         cos_swing_a2_times_y_by_divisor_a2 = y*cos_swing_a2/divisor_a2
         sin_a2 = -cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
-        minus_pivot_2_y = inner_arm*sin_a2  # rod 2
-        rod_2_y_outward = minus_pivot_2_y + y
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        rod_2_y_outward = y + inner_arm*sin_a2
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
+        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
             axis_a2_outward = nearest_period(axis_a2_outward, open_a2)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2: centre about which it swings
         rod_2_x_inward = x - pivot_2_x
         sin_a2 = sin_swing_a2_times_span_2_x_by_divisor_a2 - cos_swing_a2_times_y_by_divisor_a2
-        minus_pivot_2_y = inner_arm*sin_a2  # rod 2
-        rod_2_y_inward = minus_pivot_2_y + y
-        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        rod_2_y_inward = y + inner_arm*sin_a2
+        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
+            pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
             rod_1_x = x - pivot_1_x
-            minus_pivot_1_y = inner_arm*sin_a1  # rod 1
-            rod_1_y = minus_pivot_1_y + y
+            rod_1_y = y + inner_arm*sin_a1
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 type2_arms_aligned_outward = (
@@ -150,16 +152,16 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_outward_outward_2 = 3
             refusal_outward_inward_2 = 3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
-        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
+            pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
             rod_1_x = x - pivot_1_x
-            minus_pivot_1_y = inner_arm*sin_a1  # rod 1
-            rod_1_y = minus_pivot_1_y + y
+            rod_1_y = y + inner_arm*sin_a1
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 type2_arms_aligned_outward = (
@@ -192,87 +194,89 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return 4*(None,)
-        span_1_x = displacement_minus_tcp_displacement + x  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
+        span_1_x = displacement_minus_tcp_displacement + x  # rod 1: known part of its vector
+        effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return 4*(None,)
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
         divisor_a1_minus_outer_arm = divisor_a1 - outer_arm
         divisor_a1_plus_outer_arm = divisor_a1 + outer_arm
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = (divisor_a1_minus_outer_arm + inner_arm)*(divisor_a1_plus_outer_arm + inner_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm - divisor_a1_minus_outer_arm)*(divisor_a1_plus_outer_arm - inner_arm)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4*(None,)
-        span_2_x = x - displacement_minus_tcp_displacement  # rod 2
-        effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
+        span_2_x = x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
+        effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return 4*(None,)
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
         divisor_a2_minus_outer_arm = divisor_a2 - outer_arm
         divisor_a2_plus_outer_arm = divisor_a2 + outer_arm
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm - divisor_a2_minus_outer_arm)*(divisor_a2_plus_outer_arm - inner_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2_minus_outer_arm + inner_arm)*(divisor_a2_plus_outer_arm + inner_arm)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 4*(None,)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/divisor_of_cos_a1
         sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
-        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        minus_pivot_1_y = inner_arm*sin_a1  # rod 1
-        rod_1_y = minus_pivot_1_y + y
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        rod_1_y = y + inner_arm*sin_a1
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2: centre about which it swings
         rod_2_x_outward = x - pivot_2_x
         sin_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*sin_swing_a2/divisor_a2
         cos_swing_a2_times_y_by_divisor_a2 = y*cos_swing_a2/divisor_a2
         sin_a2 = -cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
-        minus_pivot_2_y = inner_arm*sin_a2  # rod 2
-        rod_2_y_outward = minus_pivot_2_y + y
+        rod_2_y_outward = y + inner_arm*sin_a2
         type2_arms_aligned = assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2: centre about which it swings
         rod_2_x_inward = x - pivot_2_x
         sin_a2 = sin_swing_a2_times_span_2_x_by_divisor_a2 - cos_swing_a2_times_y_by_divisor_a2
-        minus_pivot_2_y = inner_arm*sin_a2  # rod 2
-        rod_2_y_inward = minus_pivot_2_y + y
+        rod_2_y_inward = y + inner_arm*sin_a2
         type2_arms_aligned = assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = 0 if type2_arms_aligned >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
-        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
-        minus_pivot_1_y = inner_arm*sin_a1  # rod 1
-        rod_1_y = minus_pivot_1_y + y
+        rod_1_y = y + inner_arm*sin_a1
         type2_arms_aligned = assembly_sign_by_outer_arm_squared_2*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_outward = 0 if type2_arms_aligned >= min_type2_margin else 3
@@ -294,52 +298,54 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
-        span_1_x = displacement_minus_tcp_displacement + x  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
+        span_1_x = displacement_minus_tcp_displacement + x  # rod 1: known part of its vector
+        effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link_2):
             return None
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link_2 else 1.0
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm_2)*(divisor_a1 + inner_arm_plus_outer_arm_2)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm_2 - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm_2)
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
-        span_2_x = x - displacement_minus_tcp_displacement  # rod 2
-        effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
+        span_2_x = x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
+        effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link_2):
             return None
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link_2 else 1.0
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = (inner_arm_plus_outer_arm_2 - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm_2)*(divisor_a2 + inner_arm_plus_outer_arm_2)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
-        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
         sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
-        minus_pivot_1_y = inner_arm*sin_a1  # rod 1
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2/divisor_a2
-        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2: centre about which it swings
         sin_a2 = span_2_x*sin_swing_a2/divisor_a2 - y*cos_swing_a2/divisor_a2
-        minus_pivot_2_y = inner_arm*sin_a2  # rod 2
         type2_arms_aligned = (
-            ((x - pivot_1_x)*(minus_pivot_2_y + y) - (x - pivot_2_x)*(minus_pivot_1_y + y))
+            ((x - pivot_1_x)*(y + inner_arm*sin_a2) - (x - pivot_2_x)*(y + inner_arm*sin_a1))
             *assembly_sign_by_outer_arm_squared_2
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate

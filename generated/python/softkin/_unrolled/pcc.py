@@ -40,7 +40,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2 = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
@@ -49,10 +49,10 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return 2*(3,)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         )
@@ -60,15 +60,18 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2_from_a1 = (
             (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
         )
-        # twice the scale, with the rounding of its parts
-        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             return 2*(3,)
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
-        sin_a2_from_a1 = 2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/sum_a2_from_a1
+        # sine squared, times the squared scale
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1
+        sin_a2_from_a1 = (
+            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/divisor_of_cos_a2_from_a1
+        )
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(
                 link_length_2*sin_a2_from_a1 + 0.0, link_length_1 + link_length_2*cos_a2_from_a1 + 0.0,
@@ -80,13 +83,13 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         angle_a2_from_a1 = arctan2(sin_a2_from_a1 + 0.0, cos_a2_from_a1 + 0.0)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        # a2: what the sum a2_from_a1 leaves; A2: its turn
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
+        # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
         axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)/DEGREE
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
@@ -100,10 +103,10 @@ def unrolled(k: Constants) -> Unrolled:
             )
             else 3
         )
-        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        # a2: what the sum a2_from_a1 leaves; A2: its turn
+        # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
         axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1)/DEGREE
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
@@ -129,10 +132,10 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return 2*(None,)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         )
@@ -140,15 +143,18 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2_from_a1 = (
             (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
         )
-        # twice the scale, with the rounding of its parts
-        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             return 2*(None,)
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
-        sin_a2_from_a1 = 2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/sum_a2_from_a1
+        # sine squared, times the squared scale
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1
+        sin_a2_from_a1 = (
+            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/divisor_of_cos_a2_from_a1
+        )
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
             angle_of_x = arctan2(y, x)
@@ -159,8 +165,10 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1_right = free_a1
             angle_a1_left = free_a1
         angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
-        axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves
-        axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves
+        # a2 from the sum a2_from_a1 of angles about parallel axes
+        axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)*RADIAN
+        # a2 from the sum a2_from_a1 of angles about parallel axes
+        axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1)*RADIAN
         return (
             (offset_a1 + angle_a1_right*RADIAN, axis_a2_right),
             (offset_a1 + angle_a1_left*RADIAN, axis_a2_left),
@@ -174,8 +182,8 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane_2):
             return None
-        reach = sqrt(x*x + y*y)
-        # a2_from_a1: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
+        # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2_from_a1 = (
             (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         )
@@ -183,22 +191,24 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2_from_a1 = (
             (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
         )
-        # twice the scale, with the rounding of its parts
-        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             return None
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
+        # sine squared, times the squared scale
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
-            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
+            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
+            /divisor_of_cos_a2_from_a1
         )
         if reach > machine_scale_times_free_angle_2:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
         else:
             angle_a1 = (ref_a1 - offset_a1)*DEGREE
-        # a2: what the sum a2_from_a1 leaves
+        # a2 from the sum a2_from_a1 of angles about parallel axes
         axis_a2 = offset_a2 + (angle_a1 + arctan2(sin_a2_from_a1, cos_a2_from_a1))*RADIAN
         if no_offsets:
             return (angle_a1*RADIAN, axis_a2)

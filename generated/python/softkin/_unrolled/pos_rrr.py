@@ -50,18 +50,19 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2, ref_a3 = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return 4*(2,)
-        distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(x*x + y*y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         # near a fold
         if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
             ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
@@ -69,20 +70,23 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 4*(3,)
             ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d1  # what the unknown links must span
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
@@ -92,17 +96,17 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
+        axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
             axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
         angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
         angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
-        axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
+        axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
             axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_y = d3*y
             ahead_q1_before_q1_for_q3_times_x = ahead_q1_before_q1_for_q3*x
@@ -119,16 +123,16 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1_before_q1_for_q3_front = sin(free_a1)
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        # A1: whole turns added
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
             axis_a1_front = nearest_period(axis_a1_front, open_a1)
-        axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
+        axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_front_up - open_a2 < 179.999999999:
             axis_a2_front_up = nearest_period(axis_a2_front_up, open_a2)
         angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
-        axis_a3_front_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
+        axis_a3_front_up = offset_a3 + angle_q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
             axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
         # limits of A2, limits of A3
@@ -150,19 +154,22 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_front_down = 3
             refusal_front_up = 3
-        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
@@ -172,23 +179,23 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
+        axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_back_down - open_a2 < 179.999999999:
             axis_a2_back_down = nearest_period(axis_a2_back_down, open_a2)
         angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
         angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
-        axis_a3_back_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
+        axis_a3_back_down = offset_a3 + angle_q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_back_down - open_a3 < 179.999999999:
             axis_a3_back_down = nearest_period(axis_a3_back_down, open_a3)
-        # A1: its turn
+        # A1: whole turns added
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_back - open_a1 < 179.999999999:
             axis_a1_back = nearest_period(axis_a1_back, open_a1)
-        axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
+        axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_back_up - open_a2 < 179.999999999:
             axis_a2_back_up = nearest_period(axis_a2_back_up, open_a2)
         angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
-        axis_a3_back_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
+        axis_a3_back_up = offset_a3 + angle_q3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
             axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
         # limits of A2, limits of A3
@@ -225,12 +232,13 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
-        distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(x*x + y*y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         # near a fold
         if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
             ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
@@ -238,20 +246,23 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 4*(None,)
             ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d1  # what the unknown links must span
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             d3_times_y = d3*y
             ahead_q1_before_q1_for_q3_times_x = ahead_q1_before_q1_for_q3*x
@@ -269,8 +280,8 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*RADIAN
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -281,21 +292,24 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_front_down = free_a2
             angle_q2_front_up = free_a2
         angle_of_swing_q3_front_down = arctan2(-sin_swing_q3, cos_swing_q3)
-        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         refusal_back = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -346,12 +360,13 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         sigma_arm, sigma_elbow = signs
         ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
-        distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1 = sqrt(x*x + y*y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
         # near a fold
         if not (ahead_squared_q1 > machine_scale_squared_times_plane_2):
             return ()
-        # how far ahead of the axis the point is; negative: behind
+        # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
             ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)*sigma_arm
         else:
@@ -359,20 +374,23 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return None
             ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d1  # what the unknown links must span
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
+        # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # q3: law of cosines in the x_from_q1² + y_from_q1² equation: 1 - cosine, times a scale
+        # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach)*(a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2)*(a2_minus_effective_q3_2_2 + reach)
-        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
+        divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
-        # its reference where it is free
+        # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle_2:
             divisor_q1 = distance_q1*distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/divisor_q1
@@ -381,8 +399,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle_2:
             angle_q2 = (
                 arctan2(-effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)

@@ -41,22 +41,23 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2, _ = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9
         ):
             return 2*(2,)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         arm_length_1_minus_reach = arm_length_1 - reach
         arm_length_1_plus_reach = arm_length_1 + reach
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (arm_length_1_minus_reach + arm_length_2)*(arm_length_1_plus_reach + arm_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (arm_length_2 - arm_length_1_minus_reach)*(arm_length_1_plus_reach - arm_length_2)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2*(3,)
@@ -64,8 +65,8 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
             return 2*(3,)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2 + 0.0, arm_length_1 + arm_length_2*cos_a2 + 0.0)
             angle_of_x = arctan2(y + 0.0, x + 0.0)
@@ -75,12 +76,12 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_right = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
+        axis_a2_right = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
         # limits of A1, limits of A2
@@ -91,10 +92,10 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_a2_right <= highest_a2)
             else 3
         )
-        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: its turn
+        axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
         # limits of A1, limits of A2
@@ -114,21 +115,22 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         ref_a1, _, _ = 3*(0.0,) if reference is None else reference
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         arm_length_1_minus_reach = arm_length_1 - reach
         arm_length_1_plus_reach = arm_length_1 + reach
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (arm_length_1_minus_reach + arm_length_2)*(arm_length_1_plus_reach + arm_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (arm_length_2 - arm_length_1_minus_reach)*(arm_length_1_plus_reach - arm_length_2)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2*(None,)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)
             angle_of_x = arctan2(y, x)
@@ -150,19 +152,20 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         (sigma_elbow,) = signs
         ref_a1, _, _ = 3*(0.0,) if reference is None else reference
-        reach = sqrt(x*x + y*y)
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (arm_length_1_plus_arm_length_2_2 + reach)*(arm_length_1_plus_arm_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2_2)*(arm_length_1_minus_arm_length_2_2 + reach)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return None
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
             angle_a1 = arctan2(y, x) - arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)
         else:

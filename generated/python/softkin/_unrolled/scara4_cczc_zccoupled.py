@@ -50,13 +50,13 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         ref_a1, ref_a2, _, ref_a4 = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a4 <= 1e9
         ):
             return 2*(2,)
-        # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         if flange_down:
             heading_along = r11 - r22
             heading_across = r12 + r21
@@ -67,21 +67,22 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return 2*(3,)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2*(3,)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
             angle_of_x = arctan2(y + 0.0, x + 0.0)
@@ -91,23 +92,23 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_right = offset_a2 + angle_a2/DEGREE  # A2: its turn
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
+        axis_a2_right = offset_a2 + angle_a2/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
         angle_heading = arctan2(heading_across + 0.0, heading_along + 0.0)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
-        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
+        # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4_right = offset_a4 + (angle_heading - angle_a1_right - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
-        a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc_by_360/DEGREE - a4*gear_coupling/DEGREE  # a3: affine in the z equation
+        a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: joint value with its whole turns
+        a3 = z + a4*pitch_zc_by_360/DEGREE - a4*gear_coupling/DEGREE  # a3 from the z equation, which is linear in it
         axis_a3_right = a3 + offset_a3
         # limits of A1, limits of A2, limits of A4, limits of A3
         refusal_right = (
@@ -117,18 +118,18 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_a2_right <= highest_a2) and (axis_a3_right <= highest_a3) and (axis_a4_right <= highest_a4)
             else 3
         )
-        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        axis_a2_left = offset_a2 - angle_a2/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2 - angle_a2/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
-        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left)/DEGREE
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
-        a4 = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc_by_360/DEGREE - a4*gear_coupling/DEGREE  # a3: affine in the z equation
+        a4 = DEGREE*(axis_a4_left - offset_a4)  # A4: joint value with its whole turns
+        a3 = z + a4*pitch_zc_by_360/DEGREE - a4*gear_coupling/DEGREE  # a3 from the z equation, which is linear in it
         axis_a3_left = a3 + offset_a3
         # limits of A1, limits of A2, limits of A4, limits of A3
         refusal_left = (
@@ -147,7 +148,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         ref_a1, _, _, ref_a4 = 4*(0.0,) if reference is None else reference
-        # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         if flange_down:
             heading_along = r11 - r22
             heading_across = r12 + r21
@@ -158,21 +159,22 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return 2*(None,)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2*(None,)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
             angle_of_x = arctan2(y, x)
@@ -185,19 +187,21 @@ def unrolled(k: Constants) -> Unrolled:
         angle_a2 = arctan2(sin_a2, cos_a2)
         part_of_axis_a2 = angle_a2*RADIAN
         angle_heading = arctan2(heading_across, heading_along)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
-        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
+        # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4_right = offset_a4 + (angle_heading - angle_a1_right - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
-        a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        a3_right = z + a4*pitch_zc_by_360*RADIAN - a4*gear_coupling*RADIAN  # a3: affine in the z equation
-        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: joint value with its whole turns
+        # a3 from the z equation, which is linear in it
+        a3_right = z + a4*pitch_zc_by_360*RADIAN - a4*gear_coupling*RADIAN
+        # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left)/DEGREE
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
-        a4 = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3_left = z + a4*pitch_zc_by_360*RADIAN - a4*gear_coupling*RADIAN  # a3: affine in the z equation
+        a4 = DEGREE*(axis_a4_left - offset_a4)  # A4: joint value with its whole turns
+        # a3 from the z equation, which is linear in it
+        a3_left = z + a4*pitch_zc_by_360*RADIAN - a4*gear_coupling*RADIAN
         return (
             (offset_a1 + angle_a1_right*RADIAN, offset_a2 + part_of_axis_a2, a3_right + offset_a3, axis_a4_right),
             (offset_a1 + angle_a1_left*RADIAN, offset_a2 - part_of_axis_a2, a3_left + offset_a3, axis_a4_left),
@@ -208,7 +212,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
         ref_a1, _, _, ref_a4 = 4*(0.0,) if reference is None else reference
-        # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         if flange_down:
             heading_along = r11 - r22
             heading_across = r12 + r21
@@ -219,32 +223,33 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return None
-        reach = sqrt(x*x + y*y)
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return None
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:
             angle_a1 = (ref_a1 - offset_a1)*DEGREE
         angle_a2 = arctan2(sin_a2, cos_a2)
         angle_heading = arctan2(heading_across, heading_along)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
-        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
+        # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a4 - open_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, open_a4)
-        a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc_by_360*RADIAN - a4*gear_coupling*RADIAN  # a3: affine in the z equation
+        a4 = DEGREE*(axis_a4 - offset_a4)  # A4: joint value with its whole turns
+        a3 = z + a4*pitch_zc_by_360*RADIAN - a4*gear_coupling*RADIAN  # a3 from the z equation, which is linear in it
         if no_offsets:
             return (angle_a1*RADIAN, angle_a2*RADIAN, a3, axis_a4)
         return (offset_a1 + angle_a1*RADIAN, offset_a2 + angle_a2*RADIAN, a3 + offset_a3, axis_a4)

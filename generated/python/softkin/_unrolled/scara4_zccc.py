@@ -47,13 +47,14 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         _, ref_a2, ref_a3, ref_a4 = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a2 <= 1e9
             and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9
         ):
             return 2*(2,)
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -61,19 +62,20 @@ def unrolled(k: Constants) -> Unrolled:
             return 2*(3,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        wrist_y = y - link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a3: x² + y²: 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
             return 2*(3,)
@@ -81,8 +83,8 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return 2*(3,)
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3 + 0.0, link_length_1 + link_length_2*cos_a3 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
@@ -92,18 +94,18 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_a2_right = free_a2
             angle_a2_left = free_a2
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_right = offset_a2 + angle_a2_right/DEGREE  # A2: its turn
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
+        axis_a2_right = offset_a2 + angle_a2_right/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
         angle_a3 = arctan2(sin_a3 + 0.0, cos_a3 + 0.0)
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
-        axis_a3_right = offset_a3 + angle_a3/DEGREE  # A3: its turn
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
+        axis_a3_right = offset_a3 + angle_a3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_right - open_a3 < 179.999999999:
             axis_a3_right = nearest_period(axis_a3_right, open_a3)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
-        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: where its turn is open
-        # a4: what the sum a234 leaves; A4: its turn
+        open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
+        # a4 from the sum a234 of angles about parallel axes; A4: whole turns added
         axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3)/DEGREE
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
@@ -115,13 +117,13 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_a3_right <= highest_a3) and (axis_a4_right <= highest_a4)
             else 3
         )
-        axis_a2_left = offset_a2 + angle_a2_left/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2 + angle_a2_left/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
-        axis_a3_left = offset_a3 - angle_a3/DEGREE  # A3: its turn
+        axis_a3_left = offset_a3 - angle_a3/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_left - open_a3 < 179.999999999:
             axis_a3_left = nearest_period(axis_a3_left, open_a3)
-        # a4: what the sum a234 leaves; A4: its turn
+        # a4 from the sum a234 of angles about parallel axes; A4: whole turns added
         axis_a4_left = offset_a4 + (angle_a3 + angle_heading - angle_a2_left)/DEGREE
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
@@ -142,7 +144,8 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         _, ref_a2, _, _ = 4*(0.0,) if reference is None else reference
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -150,25 +153,26 @@ def unrolled(k: Constants) -> Unrolled:
             return 2*(None,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        wrist_y = y - link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a3: x² + y²: 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
             return 2*(None,)
         axis_a1 = offset_a1 + z
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -181,8 +185,10 @@ def unrolled(k: Constants) -> Unrolled:
         angle_a3 = arctan2(sin_a3, cos_a3)
         part_of_axis_a3 = angle_a3*RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)
-        axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3)*RADIAN  # a4: what the sum a234 leaves
-        axis_a4_left = offset_a4 + (angle_a3 + angle_heading - angle_a2_left)*RADIAN  # a4: what the sum a234 leaves
+        # a4 from the sum a234 of angles about parallel axes
+        axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3)*RADIAN
+        # a4 from the sum a234 of angles about parallel axes
+        axis_a4_left = offset_a4 + (angle_a3 + angle_heading - angle_a2_left)*RADIAN
         return (
             (axis_a1, offset_a2 + angle_a2_right*RADIAN, offset_a3 + part_of_axis_a3, axis_a4_right),
             (axis_a1, offset_a2 + angle_a2_left*RADIAN, offset_a3 - part_of_axis_a3, axis_a4_left),
@@ -193,7 +199,8 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
         _, ref_a2, _, _ = 4*(0.0,) if reference is None else reference
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -201,28 +208,29 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # a3: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        wrist_y = y - link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
+        # law of cosines for a3: x² + y²: 1 - cosine, times a scale
         one_less_cos_a3 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
             return None
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
         if reach > machine_scale_times_free_angle_2:
             angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
         else:
             angle_a2 = (ref_a2 - offset_a2)*DEGREE
         angle_a3 = arctan2(sin_a3, cos_a3)
-        # a4: what the sum a234 leaves
+        # a4 from the sum a234 of angles about parallel axes
         axis_a4 = offset_a4 + (arctan2(sin_heading, cos_heading) - angle_a2 - angle_a3)*RADIAN
         if no_offsets:
             return (z, angle_a2*RADIAN, angle_a3*RADIAN, axis_a4)

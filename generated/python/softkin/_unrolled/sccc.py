@@ -51,13 +51,14 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         (r11, r12, _), (r21, r22, _), _ = rotation
         ref_a1, ref_a2, ref_a3 = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return 2*(2,)
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -68,24 +69,25 @@ def unrolled(k: Constants) -> Unrolled:
             return 2*(3,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        wrist_y = y - link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2*(3,)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
@@ -95,17 +97,17 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
-        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
-        # A2: where its turn is open
+        # A2: without a commanded turn, the value nearest to this
         if single_a2:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
@@ -115,16 +117,16 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_open_a2 = offset_a2 + (ref_motor_a2 + coupling_12*free_a1)/DEGREE
             open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right/DEGREE
             open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left/DEGREE
-        axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: its turn
+        axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right - open_a2_right < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
-        axis_a2_left = offset_a2 - angle_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2 - angle_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
-        # A3: where its turn is open
+        # A3: without a commanded turn, the value nearest to this
         if single_a3:
             open_a3_right = mid_a3
             open_a3_left = mid_a3
@@ -135,7 +137,7 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_open_a3 = offset_a3 + free_a3/DEGREE
             open_a3_right = part_of_open_a3 + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE
             open_a3_left = part_of_open_a3 + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE
-        # a3: what the sum a123 leaves; A3: its turn
+        # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3_right = (
             offset_a3 + (angle_heading - angle_a1_right - angle_a2)/DEGREE
             - (coupling_13*motor_a1_right + coupling_23*motor_a2_right)/DEGREE
@@ -153,7 +155,7 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (limit_value_joint_3 <= highest_joint_3)
             else 3
         )
-        # a3: what the sum a123 leaves; A3: its turn
+        # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3_left = (
             offset_a3 + (angle_a2 + angle_heading - angle_a1_left)/DEGREE
             - (coupling_13*motor_a1_left + coupling_23*motor_a2_left)/DEGREE
@@ -180,7 +182,8 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -191,24 +194,25 @@ def unrolled(k: Constants) -> Unrolled:
             return 2*(None,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        wrist_y = y - link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return 2*(None,)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -218,17 +222,17 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         angle_a2 = arctan2(sin_a2, cos_a2)
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
-        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
-        # A2: where its turn is open
+        # A2: without a commanded turn, the value nearest to this
         if single_a2:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
@@ -237,19 +241,19 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_open_a2 = offset_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*free_a1)*RADIAN
             open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right*RADIAN
             open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left*RADIAN
-        axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: its turn
+        axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_right - open_a2_right < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
         angle_heading = arctan2(sin_heading, cos_heading)
-        # a3: what the sum a123 leaves
+        # a3 from the sum a123 of angles about parallel axes
         axis_a3_right = (
             offset_a3 + (angle_heading - angle_a1_right - angle_a2)*RADIAN
             - (coupling_13*motor_a1_right + (DEGREE*(axis_a2_right - offset_a2))*coupling_23)*RADIAN
         )
-        axis_a2_left = offset_a2 - angle_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2 - angle_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
-        # a3: what the sum a123 leaves
+        # a3 from the sum a123 of angles about parallel axes
         axis_a3_left = (
             offset_a3 + (angle_a2 + angle_heading - angle_a1_left)*RADIAN
             - (coupling_13*motor_a1_left + (DEGREE*(axis_a2_left - offset_a2))*coupling_23)*RADIAN
@@ -264,7 +268,8 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
         ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
-        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
@@ -275,43 +280,44 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        wrist_x = x - link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # a2: law of cosines in the x² + y² equation: 1 - cosine, times a scale
+        wrist_y = y - link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
+        # law of cosines for a2: x² + y²: 1 - cosine, times a scale
         one_less_cos_a2 = (link_length_1_plus_link_length_2_2 + reach)*(link_length_1_plus_link_length_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2_2)*(link_length_1_minus_link_length_2_2 + reach)
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             return None
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle_2:
             angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1 = free_a1
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - open_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, open_a1)
         angle_a2 = arctan2(sin_a2, cos_a2)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
-        # A2: where its turn is open
+        # A2: without a commanded turn, the value nearest to this
         if single_a2:
             open_a2 = mid_a2
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             open_a2 = offset_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*free_a1)*RADIAN - coupling_12*motor_a1*RADIAN
-        axis_a2 = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - open_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, open_a2)
-        # a3: what the sum a123 leaves
+        # a3 from the sum a123 of angles about parallel axes
         axis_a3 = (
             offset_a3 + (arctan2(sin_heading, cos_heading) - angle_a1 - angle_a2)*RADIAN
             - (coupling_13*motor_a1 + (DEGREE*(axis_a2 - offset_a2))*coupling_23)*RADIAN

@@ -55,43 +55,40 @@ def unrolled(k: Constants) -> Unrolled:
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return 8*(2,)
-        part_of_root_square_a1 = arm_length_squared_2 - z*z + z*z*cos_rail_angle_squared_2
-        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = (
-            part_of_root_square_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
+        part_of_radicand_a1 = arm_length_squared_2 - z*z + z*z*cos_rail_angle_squared_2
+        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1: known part of its vector
+        # quadratic equation for a1: rod 1
+        radicand_a1 = (
+            part_of_radicand_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
             + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y
         )
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
             return 8*(3,)
-        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
-        part_of_root_square_a2 = (
-            part_of_root_square_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
-        )
-        part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle_2 - part_of_root_square_a2
-        span_2_y = y - constant_part  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = (
-            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
-            - part_of_root_square_a2_2 - span_2_y*span_2_y
-            - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
+        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2: known part of its vector
+        part_of_radicand_a2 = part_of_radicand_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
+        part_of_radicand_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle_2 - part_of_radicand_a2
+        span_2_y = y - constant_part
+        # quadratic equation for a2: rod 2
+        radicand_a2 = (
+            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4 - part_of_radicand_a2_2
+            - span_2_y*span_2_y - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
             return 8*(3,)
-        span_3_y = constant_part + y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = (
+        span_3_y = constant_part + y
+        # quadratic equation for a3: rod 3
+        radicand_a3 = (
             root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
-            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4 - part_of_root_square_a2_2 - span_3_y*span_3_y
+            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4 - part_of_radicand_a2_2 - span_3_y*span_3_y
             - constant_part_2*span_3_y*z
         )
         # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
             return 8*(3,)
         # ball joint of rod 1
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
@@ -105,55 +102,50 @@ def unrolled(k: Constants) -> Unrolled:
         cos_rail_angle_times_z = z*cos_rail_angle
         part_of_middle_a2 = cos_rail_angle_times_z - span_2_x*sin_rail_angle_by_2
         middle_a2 = -part_of_middle_a2 - root_of_3_times_sin_rail_angle_by_2*span_2_y
-        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
+        a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        # rod 2: centre about which it swings
+        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2
         rod_2_x_below = x - pivot_2_x
-        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
-        rod_2_z_below = minus_pivot_2_z + z
+        rod_2_z_below = z + a2*cos_rail_angle
         middle_a3 = root_of_3_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
-        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
+        a3 = middle_a3 + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)
+        # rod 3: centre about which it swings
+        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2
         rod_3_x_below = x - pivot_3_x
-        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
-        rod_3_z_below = minus_pivot_3_z + z
+        rod_3_z_below = z + a3*cos_rail_angle
         part_of_type2_rods_coplanar = rod_2_x_below*rod_3_z_below*y - rod_2_z_below*rod_3_x_below*y
         middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
-        minus_a1 = middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
-        rod_2_y_below = y - pivot_2_y
-        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
-        rod_3_y_below = y - pivot_3_y
+        minus_a1 = middle_a1 - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
+        rod_2_y_below = y - (constant_part - a2*root_of_3_times_sin_rail_angle_by_2)
+        rod_3_y_below = y - (a3*root_of_3_times_sin_rail_angle_by_2 - constant_part)
         axis_a3_below = a3 + offset_a3
         axis_a2_below = a2 + offset_a2
         axis_a1_below = offset_a1 - minus_a1
-        a3 = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
+        a3 = middle_a3 - (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)
+        # rod 3: centre about which it swings
+        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2
         rod_3_x_above = x - pivot_3_x
-        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
-        rod_3_z_above = minus_pivot_3_z + z
+        rod_3_z_above = z + a3*cos_rail_angle
         part_of_type2_rods_coplanar_below_above_below = rod_2_x_below*rod_3_z_above*y - rod_2_z_below*rod_3_x_above*y
-        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
-        rod_3_y_above = y - pivot_3_y
+        rod_3_y_above = y - (a3*root_of_3_times_sin_rail_angle_by_2 - constant_part)
         axis_a3_above = a3 + offset_a3
-        a2 = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
+        a2 = middle_a2 - (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        # rod 2: centre about which it swings
+        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2
         rod_2_x_above = x - pivot_2_x
-        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
-        rod_2_z_above = minus_pivot_2_z + z
+        rod_2_z_above = z + a2*cos_rail_angle
         part_of_type2_rods_coplanar_below_above_below_above_below_above_2 = (
             rod_2_x_above*rod_3_z_below*y - rod_2_z_above*rod_3_x_below*y
         )
-        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
-        rod_2_y_above = y - pivot_2_y
+        rod_2_y_above = y - (constant_part - a2*root_of_3_times_sin_rail_angle_by_2)
         axis_a2_above = a2 + offset_a2
         part_of_type2_rods_coplanar_below_above_below_above_below_above_3 = (
             rod_2_x_above*rod_3_z_above*y - rod_2_z_above*rod_3_x_above*y
         )
         if axis_a1_below >= lowest_a1 and axis_a1_below <= highest_a1:
-            pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
+            pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1: centre about which it swings
             rod_1_x = x - pivot_1_x
-            pivot_1_z = minus_a1*cos_rail_angle  # rod 1
-            rod_1_z = z - pivot_1_z
+            rod_1_z = z - minus_a1*cos_rail_angle
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
@@ -219,13 +211,12 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_below_below_above_2 = 3
             refusal_below_above_below_2 = 3
             refusal_below_above_above_2 = 3
-        minus_a1 = middle_a1 + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        minus_a1 = middle_a1 + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
         axis_a1_above = offset_a1 - minus_a1
         if axis_a1_above >= lowest_a1 and axis_a1_above <= highest_a1:
-            pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
+            pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1: centre about which it swings
             rod_1_x = x - pivot_1_x
-            pivot_1_z = minus_a1*cos_rail_angle  # rod 1
-            rod_1_z = z - pivot_1_z
+            rod_1_z = z - minus_a1*cos_rail_angle
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
@@ -337,40 +328,37 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        part_of_root_square_a1 = arm_length_squared_2 - z*z + z*z*cos_rail_angle_squared_2
-        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = (
-            part_of_root_square_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
+        part_of_radicand_a1 = arm_length_squared_2 - z*z + z*z*cos_rail_angle_squared_2
+        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1: known part of its vector
+        # quadratic equation for a1: rod 1
+        radicand_a1 = (
+            part_of_radicand_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
             + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y
         )
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
             return 8*(None,)
-        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
-        part_of_root_square_a2 = (
-            part_of_root_square_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
-        )
-        part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle_2 - part_of_root_square_a2
-        span_2_y = y - constant_part  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = (
-            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
-            - part_of_root_square_a2_2 - span_2_y*span_2_y
-            - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
+        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2: known part of its vector
+        part_of_radicand_a2 = part_of_radicand_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
+        part_of_radicand_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle_2 - part_of_radicand_a2
+        span_2_y = y - constant_part
+        # quadratic equation for a2: rod 2
+        radicand_a2 = (
+            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4 - part_of_radicand_a2_2
+            - span_2_y*span_2_y - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
             return 8*(None,)
-        span_3_y = constant_part + y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = (
+        span_3_y = constant_part + y
+        # quadratic equation for a3: rod 3
+        radicand_a3 = (
             root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
-            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4 - part_of_root_square_a2_2 - span_3_y*span_3_y
+            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4 - part_of_radicand_a2_2 - span_3_y*span_3_y
             - constant_part_2*span_3_y*z
         )
         # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
             return 8*(None,)
         # ball joint of rod 1
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
@@ -384,28 +372,25 @@ def unrolled(k: Constants) -> Unrolled:
         cos_rail_angle_times_z = z*cos_rail_angle
         part_of_middle_a2 = cos_rail_angle_times_z - span_2_x*sin_rail_angle_by_2
         middle_a2 = -part_of_middle_a2 - root_of_3_times_sin_rail_angle_by_2*span_2_y
-        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
+        a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        # rod 2: centre about which it swings
+        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2
         rod_2_x_below = x - pivot_2_x
-        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
-        rod_2_z_below = minus_pivot_2_z + z
+        rod_2_z_below = z + a2*cos_rail_angle
         middle_a3 = root_of_3_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
-        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
+        a3 = middle_a3 + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)
+        # rod 3: centre about which it swings
+        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2
         rod_3_x_below = x - pivot_3_x
-        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
-        rod_3_z_below = minus_pivot_3_z + z
+        rod_3_z_below = z + a3*cos_rail_angle
         part_of_type2_rods_coplanar = rod_2_x_below*rod_3_z_below*y - rod_2_z_below*rod_3_x_below*y
         middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
-        minus_a1 = middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
+        minus_a1 = middle_a1 - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
+        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
-        pivot_1_z = minus_a1*cos_rail_angle  # rod 1
-        rod_1_z = z - pivot_1_z
-        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
-        rod_2_y_below = y - pivot_2_y
-        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
-        rod_3_y_below = y - pivot_3_y
+        rod_1_z = z - minus_a1*cos_rail_angle
+        rod_2_y_below = y - (constant_part - a2*root_of_3_times_sin_rail_angle_by_2)
+        rod_3_y_below = y - (a3*root_of_3_times_sin_rail_angle_by_2 - constant_part)
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_below*rod_3_z_below + rod_1_z*rod_2_x_below*rod_3_y_below
@@ -419,14 +404,13 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_below = offset_a1 - minus_a1
         axis_a2_below = a2 + offset_a2
         axis_a3_below = a3 + offset_a3
-        a3 = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
+        a3 = middle_a3 - (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)
+        # rod 3: centre about which it swings
+        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2
         rod_3_x_above = x - pivot_3_x
-        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
-        rod_3_z_above = minus_pivot_3_z + z
+        rod_3_z_above = z + a3*cos_rail_angle
         part_of_type2_rods_coplanar_below_above_below = rod_2_x_below*rod_3_z_above*y - rod_2_z_below*rod_3_x_above*y
-        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
-        rod_3_y_above = y - pivot_3_y
+        rod_3_y_above = y - (a3*root_of_3_times_sin_rail_angle_by_2 - constant_part)
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_below*rod_3_z_above + rod_1_z*rod_2_x_below*rod_3_y_above
@@ -438,16 +422,15 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_above = a3 + offset_a3
-        a2 = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
+        a2 = middle_a2 - (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        # rod 2: centre about which it swings
+        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2
         rod_2_x_above = x - pivot_2_x
-        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
-        rod_2_z_above = minus_pivot_2_z + z
+        rod_2_z_above = z + a2*cos_rail_angle
         part_of_type2_rods_coplanar_below_above_below_above_below_above_2 = (
             rod_2_x_above*rod_3_z_below*y - rod_2_z_above*rod_3_x_below*y
         )
-        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
-        rod_2_y_above = y - pivot_2_y
+        rod_2_y_above = y - (constant_part - a2*root_of_3_times_sin_rail_angle_by_2)
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_above*rod_3_z_below + rod_1_z*rod_2_x_above*rod_3_y_below
@@ -472,11 +455,10 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
-        minus_a1 = middle_a1 + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
+        minus_a1 = middle_a1 + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)
+        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
-        pivot_1_z = minus_a1*cos_rail_angle  # rod 1
-        rod_1_z = z - pivot_1_z
+        rod_1_z = z - minus_a1*cos_rail_angle
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_below*rod_3_z_below + rod_1_z*rod_2_x_below*rod_3_y_below
@@ -533,31 +515,31 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
-        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1
-        # a1: quadratic in the rod 1 equation
-        root_square_a1 = (
+        span_1_x = x - inner_radius_minus_outer_radius_2  # rod 1: known part of its vector
+        # quadratic equation for a1: rod 1
+        radicand_a1 = (
             arm_length_squared_2 + z*z*cos_rail_angle_squared_2
             + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2 + span_1_x*span_1_x*sin_rail_angle_squared
             - span_1_x*span_1_x - y*y - z*z
         )
         # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a1 >= -arm_length_squared_times_rounding_2):
             return None
-        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
-        span_2_y = y - constant_part  # rod 2
-        # a2: quadratic in the rod 2 equation
-        root_square_a2 = (
+        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2: known part of its vector
+        span_2_y = y - constant_part
+        # quadratic equation for a2: rod 2
+        radicand_a2 = (
             arm_length_squared_2 + constant_part_2*span_2_y*z + z*z*cos_rail_angle_squared_2
             + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
             - span_2_x*span_2_x - span_2_y*span_2_y - z*z - span_2_x*z*cos_rail_angle_times_sin_rail_angle_2
             - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
         # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a2 >= -arm_length_squared_times_rounding_2):
             return None
-        span_3_y = constant_part + y  # rod 3
-        # a3: quadratic in the rod 3 equation
-        root_square_a3 = (
+        span_3_y = constant_part + y
+        # quadratic equation for a3: rod 3
+        radicand_a3 = (
             arm_length_squared_2 + z*z*cos_rail_angle_squared_2
             + root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
             + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4
@@ -565,32 +547,29 @@ def unrolled(k: Constants) -> Unrolled:
             - span_2_x*z*cos_rail_angle_times_sin_rail_angle_2
         )
         # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding_2):
+        if not (radicand_a3 >= -arm_length_squared_times_rounding_2):
             return None
         minus_a1 = (
             z*cos_rail_angle + span_1_x*sin_rail_angle
-            - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
+            - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1
         )
-        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1
+        pivot_1_x = inner_radius_minus_outer_radius_2 + minus_a1*sin_rail_angle  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
-        pivot_1_z = minus_a1*cos_rail_angle  # rod 1
-        rod_1_z = z - pivot_1_z
+        rod_1_z = z - minus_a1*cos_rail_angle
         middle_a2 = span_2_x*sin_rail_angle_by_2 - z*cos_rail_angle - root_of_3_times_sin_rail_angle_by_2*span_2_y
-        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
-        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
+        a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
+        # rod 2: centre about which it swings
+        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
-        rod_2_y = y - pivot_2_y
-        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
-        rod_2_z = minus_pivot_2_z + z
+        rod_2_y = y - (constant_part - a2*root_of_3_times_sin_rail_angle_by_2)
+        rod_2_z = z + a2*cos_rail_angle
         middle_a3 = root_of_3_times_sin_rail_angle_by_2*span_3_y + span_2_x*sin_rail_angle_by_2 - z*cos_rail_angle
-        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
-        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
+        a3 = middle_a3 + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)*sigma_carriage_3
+        # rod 3: centre about which it swings
+        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2
         rod_3_x = x - pivot_3_x
-        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
-        rod_3_y = y - pivot_3_y
-        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
-        rod_3_z = minus_pivot_3_z + z
+        rod_3_y = y - (a3*root_of_3_times_sin_rail_angle_by_2 - constant_part)
+        rod_3_z = z + a3*cos_rail_angle
         type2_rods_coplanar = (
             assembly_sign_by_constant_part
             *(

@@ -56,38 +56,39 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2, ref_a3 = reference
-        # numbers of reasonable size
+        # inputs must be numbers, and of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return 8*(2,)
-        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1
-        span_1_z = z - fixed_length_2  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1: known part of its vector
+        span_1_z = z - fixed_length_2
+        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return 8*(3,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
         arm_length_1_times_divisor_a1_times_2 = arm_length_1_times_2*divisor_a1
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a1 = (
             constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
         )
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = arm_length_1_times_divisor_a1_times_2 - scaled_cosine_a1
         one_plus_cos_a1 = arm_length_1_times_divisor_a1_times_2 + scaled_cosine_a1  # 1 + cosine, times the scale
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 8*(3,)
-        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
-        span_2_y = constant_part_2 + y  # rod 2
+        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2: known part of its vector
+        span_2_y = constant_part_2 + y
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > share_of_arm_length_1):
             return 8*(3,)
@@ -97,33 +98,35 @@ def unrolled(k: Constants) -> Unrolled:
             (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_1_z - fixed_length_2)*z
         )
         part_of_scaled_cosine_a2_2 = constant_part - part_of_scaled_cosine_a2
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a2 = (constant_part_2 + span_2_y)*y - part_of_scaled_cosine_a2_2
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_divisor_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_divisor_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 8*(3,)
-        span_3_y = y - constant_part_2  # rod 3
+        span_3_y = y - constant_part_2
         along_a3 = span_2_x + root(3.0)*span_3_y
-        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > share_of_arm_length_1):
             return 8*(3,)
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         arm_length_1_times_divisor_a3 = arm_length_1*divisor_a3
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a3 = (span_3_y - constant_part_2)*y - part_of_scaled_cosine_a2_2
-        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        # law of cosines for a3: rod 3: 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_divisor_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_divisor_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return 8*(3,)
@@ -136,91 +139,91 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(3,)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
-        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
+        # rod 2: centre about which it swings
+        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2
         rod_2_x_outward = x - pivot_2_x
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
         sin_a2 = -across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        rod_2_z_outward = z - pivot_2_z
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
+        rod_2_z_outward = z - (fixed_length_2 - arm_length_1*sin_a2)
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
         across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - across_a2_times_sin_swing_a3_by_divisor_a3
-        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
+        # rod 3: centre about which it swings
+        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3
         rod_3_x_outward = x - pivot_3_x
         along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
         across_a2_times_cos_swing_a3_by_divisor_a3 = across_a2*cos_swing_a3/divisor_a3
         sin_a3 = -across_a2_times_cos_swing_a3_by_divisor_a3 - along_a3_times_sin_swing_a3_by_divisor_a3
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        rod_3_z_outward = z - pivot_3_z
+        rod_3_z_outward = z - (fixed_length_2 - arm_length_1*sin_a3)
         part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/divisor_of_cos_a1
         sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
-        rod_2_y_outward = y - pivot_2_y
-        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
-        rod_3_y_outward = y - pivot_3_y
-        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: where its turn is open
-        axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        rod_2_y_outward = y - (-constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2)
+        rod_3_y_outward = y - (constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3)
+        open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
+        axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_outward - open_a3 < 179.999999999:
             axis_a3_outward = nearest_period(axis_a3_outward, open_a3)
-        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: where its turn is open
-        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
+        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
             axis_a2_outward = nearest_period(axis_a2_outward, open_a2)
-        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: where its turn is open
-        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
+        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = across_a2_times_sin_swing_a3_by_divisor_a3 + along_a3_times_cos_swing_a3_by_divisor_a3
-        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
+        # rod 3: centre about which it swings
+        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3
         rod_3_x_inward = x - pivot_3_x
         sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - across_a2_times_cos_swing_a3_by_divisor_a3
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        rod_3_z_inward = z - pivot_3_z
+        rod_3_z_inward = z - (fixed_length_2 - arm_length_1*sin_a3)
         part_of_type2_rods_coplanar_outward_inward_outward = (
             rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
         )
-        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
-        rod_3_y_inward = y - pivot_3_y
-        axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        rod_3_y_inward = y - (constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3)
+        axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
             axis_a3_inward = nearest_period(axis_a3_inward, open_a3)
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
-        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
+        # rod 2: centre about which it swings
+        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2
         rod_2_x_inward = x - pivot_2_x
         sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - across_a2_times_cos_swing_a2_by_divisor_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        rod_2_z_inward = z - pivot_2_z
+        rod_2_z_inward = z - (fixed_length_2 - arm_length_1*sin_a2)
         part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
             rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
         )
-        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
-        rod_2_y_inward = y - pivot_2_y
-        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        rod_2_y_inward = y - (-constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2)
+        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
         part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3 = (
             rod_2_x_inward*rod_3_z_inward*y - rod_2_z_inward*rod_3_x_inward*y
         )
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
+            pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1: centre about which it swings
             rod_1_x = x - pivot_1_x
-            pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
-            rod_1_z = z - pivot_1_z
+            rod_1_z = z - (fixed_length_2 - arm_length_1*sin_a1)
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
@@ -286,16 +289,16 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_outward_outward_inward_2 = 3
             refusal_outward_inward_outward_2 = 3
             refusal_outward_inward_inward_2 = 3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
-        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
+            pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1: centre about which it swings
             rod_1_x = x - pivot_1_x
-            pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
-            rod_1_z = z - pivot_1_z
+            rod_1_z = z - (fixed_length_2 - arm_length_1*sin_a1)
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
@@ -407,32 +410,33 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1
-        span_1_z = z - fixed_length_2  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1: known part of its vector
+        span_1_z = z - fixed_length_2
+        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return 8*(None,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
         arm_length_1_times_divisor_a1_times_2 = arm_length_1_times_2*divisor_a1
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a1 = (
             constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
         )
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = arm_length_1_times_divisor_a1_times_2 - scaled_cosine_a1
         one_plus_cos_a1 = arm_length_1_times_divisor_a1_times_2 + scaled_cosine_a1  # 1 + cosine, times the scale
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 8*(None,)
-        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
-        span_2_y = constant_part_2 + y  # rod 2
+        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2: known part of its vector
+        span_2_y = constant_part_2 + y
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > share_of_arm_length_1):
             return 8*(None,)
@@ -442,33 +446,35 @@ def unrolled(k: Constants) -> Unrolled:
             (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_1_z - fixed_length_2)*z
         )
         part_of_scaled_cosine_a2_2 = constant_part - part_of_scaled_cosine_a2
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a2 = (constant_part_2 + span_2_y)*y - part_of_scaled_cosine_a2_2
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_divisor_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_divisor_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return 8*(None,)
-        span_3_y = y - constant_part_2  # rod 3
+        span_3_y = y - constant_part_2
         along_a3 = span_2_x + root(3.0)*span_3_y
-        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > share_of_arm_length_1):
             return 8*(None,)
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         arm_length_1_times_divisor_a3 = arm_length_1*divisor_a3
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a3 = (span_3_y - constant_part_2)*y - part_of_scaled_cosine_a2_2
-        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        # law of cosines for a3: rod 3: 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_divisor_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_divisor_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return 8*(None,)
@@ -481,47 +487,47 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
-        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
+        # rod 2: centre about which it swings
+        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2
         rod_2_x_outward = x - pivot_2_x
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
         sin_a2 = -across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        rod_2_z_outward = z - pivot_2_z
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
+        rod_2_z_outward = z - (fixed_length_2 - arm_length_1*sin_a2)
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
         across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - across_a2_times_sin_swing_a3_by_divisor_a3
-        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
+        # rod 3: centre about which it swings
+        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3
         rod_3_x_outward = x - pivot_3_x
         along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
         across_a2_times_cos_swing_a3_by_divisor_a3 = across_a2*cos_swing_a3/divisor_a3
         sin_a3 = -across_a2_times_cos_swing_a3_by_divisor_a3 - along_a3_times_sin_swing_a3_by_divisor_a3
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        rod_3_z_outward = z - pivot_3_z
+        rod_3_z_outward = z - (fixed_length_2 - arm_length_1*sin_a3)
         part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/divisor_of_cos_a1
         sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
-        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
-        rod_1_z = z - pivot_1_z
-        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
-        rod_2_y_outward = y - pivot_2_y
-        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
-        rod_3_y_outward = y - pivot_3_y
+        rod_1_z = z - (fixed_length_2 - arm_length_1*sin_a1)
+        rod_2_y_outward = y - (-constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2)
+        rod_3_y_outward = y - (constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3)
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_z*rod_2_x_outward*rod_3_y_outward
@@ -535,17 +541,17 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = across_a2_times_sin_swing_a3_by_divisor_a3 + along_a3_times_cos_swing_a3_by_divisor_a3
-        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
+        # rod 3: centre about which it swings
+        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3
         rod_3_x_inward = x - pivot_3_x
         sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - across_a2_times_cos_swing_a3_by_divisor_a3
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        rod_3_z_inward = z - pivot_3_z
+        rod_3_z_inward = z - (fixed_length_2 - arm_length_1*sin_a3)
         part_of_type2_rods_coplanar_outward_inward_outward = (
             rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
         )
-        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
-        rod_3_y_inward = y - pivot_3_y
+        rod_3_y_inward = y - (constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3)
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_z*rod_2_x_outward*rod_3_y_inward
@@ -557,17 +563,17 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
-        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
+        # rod 2: centre about which it swings
+        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2
         rod_2_x_inward = x - pivot_2_x
         sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - across_a2_times_cos_swing_a2_by_divisor_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        rod_2_z_inward = z - pivot_2_z
+        rod_2_z_inward = z - (fixed_length_2 - arm_length_1*sin_a2)
         part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
             rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
         )
-        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
-        rod_2_y_inward = y - pivot_2_y
+        rod_2_y_inward = y - (-constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2)
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_z*rod_2_x_inward*rod_3_y_outward
@@ -592,12 +598,12 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
-        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
-        rod_1_z = z - pivot_1_z
+        rod_1_z = z - (fixed_length_2 - arm_length_1*sin_a1)
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_z*rod_2_x_outward*rod_3_y_outward
@@ -654,98 +660,101 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
-        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1
-        span_1_z = z - fixed_length_2  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1: known part of its vector
+        span_1_z = z - fixed_length_2
+        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link_2):
             return None
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a1 = (
             constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
         )
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link_2 else 1.0
-        # a1: law of cosines in the rod 1 equation: 1 - cosine, times a scale
+        # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = arm_length_1_times_2*divisor_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + arm_length_1_times_2*divisor_a1  # 1 + cosine, times the scale
-        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
+        divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
-        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
-        span_2_y = constant_part_2 + y  # rod 2
+        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2: known part of its vector
+        span_2_y = constant_part_2 + y
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > share_of_arm_length_1):
             return None
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a2 = (
             (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (constant_part_2 + span_2_y)*y
             + (span_1_z - fixed_length_2)*z - constant_part
         )
         divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
-        # a2: law of cosines in the rod 2 equation: 1 - cosine, times a scale
+        # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2
         one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1*divisor_a2  # 1 + cosine, times the scale
-        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
+        divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
-        span_3_y = y - constant_part_2  # rod 3
+        span_3_y = y - constant_part_2
         along_a3 = span_2_x + root(3.0)*span_3_y
-        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > share_of_arm_length_1):
             return None
-        # cosine times the scale, seen from the origin
+        # cosine, times the scale, without cancellation
         scaled_cosine_a3 = (
             (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_3_y - constant_part_2)*y
             + (span_1_z - fixed_length_2)*z - constant_part
         )
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
-        # a3: law of cosines in the rod 3 equation: 1 - cosine, times a scale
+        # law of cosines for a3: rod 3: 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3
         one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1*divisor_a3  # 1 + cosine, times the scale
-        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        # twice the scale, as the sum of both: then cosine and sine agree
+        sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
+        divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             return None
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
-        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1: centre about which it swings
         rod_1_x = x - pivot_1_x
         sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
-        rod_1_z = z - pivot_1_z
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        rod_1_z = z - (fixed_length_2 - arm_length_1*sin_a1)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
+        # rod 2: centre about which it swings
+        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
-        rod_2_y = y - pivot_2_y
+        rod_2_y = y - (-constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2)
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
-        rod_2_z = z - pivot_2_z
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
-        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
+        rod_2_z = z - (fixed_length_2 - arm_length_1*sin_a2)
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
+        # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
+        # rod 3: centre about which it swings
+        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
-        rod_3_y = y - pivot_3_y
+        rod_3_y = y - (constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3)
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
-        rod_3_z = z - pivot_3_z
+        rod_3_z = z - (fixed_length_2 - arm_length_1*sin_a3)
         type2_rods_coplanar = (
             assembly_sign_by_constant_part
             *(

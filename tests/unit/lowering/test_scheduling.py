@@ -1,22 +1,29 @@
-"""Arms: what only one side of a choice needs is computed there only."""
+"""Scheduling: what only one side of a choice needs is computed there only."""
 
 from __future__ import annotations
 
 import sympy as sp
 
+from derive.ir.passes import assemble
 from derive.ir.primitives import (
     Root,
     Select,
 )
 from derive.ir.program import (
     Let,
+    Output,
+    Program,
     Require,
+    Solve,
+    Statement,
     Status,
 )
 from derive.ir.symbols import (
     real,
 )
-from derive.optimize.control_flow import Arms, Item, in_arms, spared
+from derive.ir.tree import If, Item
+from derive.lowering.scheduling import scheduled, spared, structured
+from derive.report.cost import cost_of
 
 A, B, C, D, E, F, R, X, Y = (real(n) for n in "abcdefrxy")
 REGULAR, NEAR = sp.Gt(R, 1), sp.Lt(X, 2)
@@ -26,7 +33,7 @@ def shape(items: tuple[Item, ...]) -> list[object]:
     """Names in order; a choice as its condition and its two sides."""
     found: list[object] = []
     for item in items:
-        if isinstance(item, Arms):
+        if isinstance(item, If):
             found.append((item.condition, shape(item.holds), shape(item.fails)))
         else:
             found.append(item.name if isinstance(item, Let) else "require")
@@ -41,26 +48,26 @@ def test_choices_by_one_condition_are_gathered_with_what_they_alone_need() -> No
         Let(D, X + 1),
         Let(E, Select(REGULAR, D / R, B + 1)),
     ]
-    assert shape(in_arms(body, [C, E])) == [(REGULAR, [A, C, D, E], [B, C, E])]
+    assert shape(scheduled(body, [C, E])) == [(REGULAR, [A, C, D, E], [B, C, E])]
 
 
 def test_what_is_read_elsewhere_stays_before() -> None:
     body = [Let(A, Root(X)), Let(C, Select(REGULAR, A, Y)), Let(E, Select(REGULAR, A + 1, Y + 1)), Let(F, A + C + E)]
-    assert shape(in_arms(body, [F])) == [A, (REGULAR, [C, E], [C, E]), F]
+    assert shape(scheduled(body, [F])) == [A, (REGULAR, [C, E], [C, E]), F]
 
 
 def test_a_name_for_a_name_disappears_where_nobody_else_reads_it() -> None:
     body = [Let(A, Select(REGULAR, R, sp.Integer(1))), Let(B, Select(REGULAR, X / A, Y)), Let(C, Select(REGULAR, Y / A, X))]
-    (arms,) = in_arms(body, [B, C])
-    assert isinstance(arms, Arms)
+    (arms,) = scheduled(body, [B, C])
+    assert isinstance(arms, If)
     assert arms.holds == (Let(B, X / R), Let(C, Y / R))
     assert arms.fails == (Let(B, Y), Let(C, X))
 
 
 def test_a_negative_is_taken_from_what_has_been_computed() -> None:
     body = [Let(B, Select(REGULAR, X / R, Y)), Let(C, Select(REGULAR, -X / R, Y))]
-    (arms,) = in_arms(body, [B, C])
-    assert isinstance(arms, Arms) and arms.holds == (Let(B, X / R), Let(C, -B))
+    (arms,) = scheduled(body, [B, C])
+    assert isinstance(arms, If) and arms.holds == (Let(B, X / R), Let(C, -B))
 
 
 def test_a_choice_that_a_number_decides_is_decided_with_it() -> None:
@@ -72,8 +79,8 @@ def test_a_choice_that_a_number_decides_is_decided_with_it() -> None:
         Let(A, Select(sp.Gt(stays, 0), Y, long_way)),
         Let(B, Select(sp.Gt(stays, 0), R, long_way + 1)),
     ]
-    (arms,) = in_arms(body, [A, B])
-    assert isinstance(arms, Arms) and arms.condition == NEAR
+    (arms,) = scheduled(body, [A, B])
+    assert isinstance(arms, If) and arms.condition == NEAR
     assert arms.holds == (Let(A, Y), Let(B, R))
     assert shape(arms.fails)[0] == long_way
 
@@ -87,13 +94,13 @@ def test_what_needs_a_choice_before_it_is_not_gathered_with_that() -> None:
         Let(D, Select(REGULAR, F, Y)),
         Let(E, Select(REGULAR, F + 1, X)),
     ]
-    assert shape(in_arms(body, [D, E, F])) == [(REGULAR, [A, C], [A, C]), F, (REGULAR, [D, E], [D, E])]
+    assert shape(scheduled(body, [D, E, F])) == [(REGULAR, [A, C], [A, C]), F, (REGULAR, [D, E], [D, E])]
 
 
 def test_a_condition_is_not_crossed() -> None:
     refused = Require(NEAR, Status.UNREACHABLE)
     body = [Let(A, Select(REGULAR, X, Y)), refused, Let(B, Select(REGULAR, Y, X))]
-    assert in_arms(body, [A, B]) == tuple(body)
+    assert scheduled(body, [A, B]) == tuple(body)
 
 
 def test_what_only_second_sides_read_is_bound_on_each_of_them() -> None:
@@ -104,16 +111,54 @@ def test_what_only_second_sides_read_is_bound_on_each_of_them() -> None:
         Let(C, Select(NEAR, Y, D + A)),
         Let(E, Select(NEAR, Y + 1, D + B)),
     ]
-    assert shape(in_arms(body, [A, B, C, E])) == [(REGULAR, [A, B], [D, A, B]), (NEAR, [C, E], [D, C, E])]
+    assert shape(scheduled(body, [A, B, C, E])) == [(REGULAR, [A, B], [D, A, B]), (NEAR, [C, E], [D, C, E])]
 
 
 def test_a_side_keeps_a_statement() -> None:
     """Nothing reads A where the condition holds: the side is bound all the same, because a side cannot be empty."""
-    choice = Arms(REGULAR, (Let(A, X),), (Let(A, Y),), (A,))
-    later = Arms(REGULAR, (Let(B, X),), (Let(B, A + 1),), (B,))
+    choice = If(REGULAR, (Let(A, X),), (Let(A, Y),), (A,))
+    later = If(REGULAR, (Let(B, X),), (Let(B, A + 1),), (B,))
     assert spared([choice, later], [B]) == (choice, later)
 
 
 def test_a_single_choice_stays_an_expression() -> None:
     body = [Let(A, Root(X)), Let(B, Select(REGULAR, A, Y))]
-    assert in_arms(body, [B]) == tuple(body)
+    assert scheduled(body, [B]) == tuple(body)
+
+
+def refusing(*body: Statement) -> Program:
+    return assemble("branch", body, [Output("a", A), Output("b", B)])
+
+
+def test_choices_on_both_sides_of_a_refusal_are_one_where_the_first_stands() -> None:
+    program = refusing(
+        Let(A, Select(REGULAR, X, Y)), Require(sp.Gt(A, 0), Status.UNREACHABLE), Let(C, sp.sin(X)), Let(B, Select(REGULAR, Y, C))
+    )
+    assert shape(structured(program)) == [(REGULAR, [A, B], [A, C, B]), "require"]
+
+
+def test_a_choice_waits_for_what_it_needs() -> None:
+    """B needs the solution of an equation, which stays behind the refusal."""
+    first, refused, last = Let(A, Select(REGULAR, X, Y)), Require(sp.Gt(A, 0), Status.UNREACHABLE), Let(B, Select(REGULAR, Y, D))
+    program = refusing(first, refused, Solve((D,), (E,), (F,)), last)
+    assert [type(item).__name__ for item in structured(program)] == ["Let", "Require", "Solve", "Let"]
+
+
+def test_what_a_later_choice_needs_does_not_go_before_an_earlier_one() -> None:
+    """C stands first, and only the second side of the second choice needs it."""
+    body = [
+        Let(C, sp.sin(Y)),
+        Let(A, Select(NEAR, X, Y)),
+        Let(D, Select(NEAR, X + 1, Y + 1)),
+        Let(B, Select(REGULAR, A, C)),
+        Let(E, Select(REGULAR, D, C + 1)),
+    ]
+    assert shape(scheduled(body, [A, B, D, E])) == [(NEAR, [A, D], [A, D]), (REGULAR, [B, E], [C, B, E])]
+
+
+def test_a_side_runs_alone() -> None:
+    """The tree gives what the program gives, and computes less."""
+    program = refusing(Let(C, sp.sin(Y)), Let(A, Select(REGULAR, X, C)), Let(B, Select(REGULAR, Y, C + 1)))
+    assert cost_of(program).trigonometric == 1
+    (choice,) = structured(program)
+    assert isinstance(choice, If) and shape(choice.holds) == [A, B] and shape(choice.fails) == [C, A, B]

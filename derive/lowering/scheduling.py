@@ -1,0 +1,174 @@
+"""Scheduling: what only one side of a choice needs is computed there only.
+
+    length = select(radius > tolerance, radius, 1)            if radius > tolerance:
+    cos_q4 = select(radius > tolerance, x/length, cos(free))      cos_q4 = x/radius
+    sin_q4 = select(radius > tolerance, y/length, sin(free))      sin_q4 = y/radius
+                                                        →     else:
+                                                                  cos_q4 = cos(free)
+                                                                  sin_q4 = sin(free)
+
+A language that evaluates one side of a choice alone prints the result; the values are the same. A program is total, so that
+a statement may move to where it is needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.ir.passes import told_in
+from derive.ir.primitives import (
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Program,
+    Statement,
+    binds,
+    expressions,
+    reads,
+)
+from derive.ir.symbols import (
+    names_in,
+)
+from derive.ir.tree import If, Item
+from derive.lowering.decided import decided
+from derive.lowering.stretches import follows, gathered
+
+
+def structured(program: Program) -> tuple[Item, ...]:
+    """A program for a language that returns at the first refusal, and runs one side of a choice alone."""
+    program = decided(replace(program, body=_together(program.body)))
+    return told_on_sides(scheduled(program.body, [o.value for o in program.outputs]), program)
+
+
+def _together(body: Sequence[Statement]) -> tuple[Statement, ...]:
+    """Choices by one condition, in the stretch between refusals where the first of them stands, with what they need.
+
+    Nothing that is bound needs a refusal before it: a program is total. What waits for a statement of another kind stays.
+    """
+    stretches: list[list[Let]] = [[]]
+    others: list[Statement] = []
+    for statement in body:
+        if isinstance(statement, Let):
+            stretches[-1].append(statement)
+        else:
+            others.append(statement)
+            stretches.append([])
+    first: dict[sp.Basic, int] = {}
+    for place, lets in enumerate(stretches):
+        for let in tuple(lets):
+            if isinstance(let.value, Select):
+                _advance(let, place, first.setdefault(let.value.args[0], place), stretches, others)
+    ends: list[list[Statement]] = [[other] for other in others]
+    return tuple(s for lets, end in zip(stretches, [*ends, []], strict=True) for s in (*lets, *end))
+
+
+def _advance(let: Let, place: int, target: int, stretches: list[list[Let]], others: Sequence[Statement]) -> None:
+    """Move a statement to the end of an earlier stretch, after what it needs, if all of that can be computed there."""
+    between = [s for lets in stretches[target + 1 : place + 1] for s in lets]
+    needed = set(reads(let)) | {let.name}
+    for other in reversed(between):
+        needed |= reads(other) if other.name in needed else set()
+    if not any(needed & set(binds(s)) for s in others[target:place]):
+        moved = [s for s in between if s.name in needed]
+        stretches[target] += moved
+        for lets in stretches[target + 1 : place + 1]:
+            lets[:] = [s for s in lets if s.name not in needed]
+
+
+def scheduled(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
+    """The statements of a program, choices that share a condition gathered with what they alone need."""
+    return _sunk(_in_arms(body, wanted), {s for value in wanted for s in names_in(value)})
+
+
+def told_on_sides(items: Sequence[Item], program: Program) -> tuple[Item, ...]:
+    """The statements, with what reasons read and a choice keeps to one of its sides written out in them."""
+    values = {let.name: let.value for let in program.lets()}
+    bound: set[sp.Symbol] = set()
+    found: list[Item] = []
+    for item in items:
+        found.append(item if isinstance(item, If) else told_in(item, bound, values))
+        bound |= _bound_behind(item)
+    return tuple(found)
+
+
+def _bound_behind(item: Item) -> set[sp.Symbol]:
+    """What is bound behind a statement; behind a choice, what both sides bind."""
+    if not isinstance(item, If):
+        return set(binds(item))
+    holds, fails = ({name for inner in side for name in _bound_behind(inner)} for side in (item.holds, item.fails))
+    return holds & fails
+
+
+def spared(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
+    """Without what is bound on a first side for the second sides of later choices that the same condition decides.
+
+    It serves a language that runs one side alone: a choice then binds its names on the other side only.
+    """
+    later = {s for value in wanted for s in names_in(value)}
+    found: list[Item] = []
+    for place, item in enumerate(items):
+        if isinstance(item, If):
+            needed = later.union(*(_reads_where(other, item.condition) for other in items[place + 1 :]))
+            read = needed.union(*(_reads_somewhere(inner) for inner in item.holds))
+            kept = tuple(i for i in item.holds if not isinstance(i, Let) or i.name in read)
+            item = replace(item, holds=kept or item.holds)  # a side has a statement
+        found.append(item)
+    return tuple(found)
+
+
+def _reads_where(item: Item, condition: sp.Basic) -> set[sp.Symbol]:
+    """What a statement reads where a condition holds."""
+    if isinstance(item, If) and (item.condition == condition or follows(item.condition, condition, sp.true)):
+        return set(names_in(item.condition)).union(*map(_reads_somewhere, item.holds))
+    return _reads_somewhere(item)
+
+
+def _sunk(items: Sequence[Item], later: set[sp.Symbol]) -> tuple[Item, ...]:
+    """What is read on the second sides of several choices only, the singular ones, is bound on each of them."""
+    found: list[Item] = []
+    needed = set(later)
+    for item in reversed(items):
+        if isinstance(item, Let) and item.name not in needed and any(isinstance(i, If) for i in found):
+            found = [_with(i, item) if isinstance(i, If) else i for i in found]
+            continue
+        needed |= _reads_always(item)
+        found.insert(0, item)
+    return tuple(found)
+
+
+def _reads_always(item: Item) -> set[sp.Symbol]:
+    """What a statement reads, or a choice to decide and on its first side."""
+    if isinstance(item, If):
+        return set(names_in(item.condition)).union(*map(_reads_somewhere, item.holds))
+    return {s for value in expressions(item) for s in names_in(value)} | set(reads(item))
+
+
+def _with(arms: If, let: Let) -> If:
+    """The choice with a statement in front of its second side, if that reads it."""
+    if not any(let.name in _reads_somewhere(item) for item in arms.fails):
+        return arms
+    return replace(arms, fails=(let, *arms.fails))
+
+
+def _reads_somewhere(item: Item) -> set[sp.Symbol]:
+    if isinstance(item, If):
+        return _reads_always(item).union(*(_reads_somewhere(inner) for inner in (*item.holds, *item.fails)))
+    return _reads_always(item)
+
+
+def _in_arms(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
+    later = frozenset(s for value in wanted for s in names_in(value))
+    found: list[Item] = []
+    stretch: list[Let] = []
+    for statement in reversed(body):
+        if isinstance(statement, Let):
+            stretch.insert(0, statement)
+            continue
+        found[:0] = [statement, *gathered(stretch, later)]
+        later = later.union(*(names_in(let.value) for let in stretch), _reads_somewhere(statement))
+        stretch = []
+    return (*gathered(stretch, later), *found)
