@@ -3,7 +3,19 @@
 
 from __future__ import annotations
 
-from softkin._array import Codes, Real, Reals, Rotation, absolute, elsewhere, passed, require, select, sqrt
+from softkin._array import (
+    Codes,
+    Real,
+    Reals,
+    Rotation,
+    absolute,
+    elsewhere,
+    passed,
+    reasonable,
+    require,
+    select,
+    sqrt,
+)
 from softkin._types import Status
 
 
@@ -12,15 +24,7 @@ def made_rotations(rotation: Rotation) -> tuple[Rotation, Codes]:
     (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
     status = passed(rotation)
     # numbers of reasonable size
-    require(
-        status,
-        (
-            (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-            & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-            & (absolute(r33) <= 1e9)
-        ),
-        Status.BAD_INPUT,
-    )
+    require(status, reasonable(r11, r12, r13, r21, r22, r23, r31, r32, r33), Status.BAD_INPUT)
     uneven_x = absolute(r11*r11 + r21*r21 + r31*r31 - 1.0)
     uneven_y = absolute(r12*r12 + r22*r22 + r32*r32 - 1.0)
     uneven_z = absolute(r13*r13 + r23*r23 + r33*r33 - 1.0)

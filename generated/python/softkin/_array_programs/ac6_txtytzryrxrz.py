@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     Programs,
-    absolute,
     cos,
     degrees,
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -29,9 +29,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -39,14 +37,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9) & (absolute(axis_a5) <= 1e9) & (absolute(axis_a6) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
         a5 = DEGREE*(axis_a5 - k.offset_a5)
         cos_a5 = cos(a5)
         a4 = DEGREE*(axis_a4 - k.offset_a4)
@@ -97,14 +88,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_a4, ref_a5, ref_a6, x, y, z), Status.BAD_INPUT)
         wrist_x = x - k.flange_x*r11 - k.flange_y*r12 - k.flange_z*r13  # the point that the last joints turn about
         axis_a1 = k.offset_a1 + wrist_x
         wrist_y = y - k.flange_x*r21 - k.flange_y*r22 - k.flange_z*r23

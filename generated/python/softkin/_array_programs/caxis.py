@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     OrientationPrograms,
-    absolute,
     cos,
     degrees,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -28,9 +28,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(OrientationPrograms):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -38,7 +36,7 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(status, absolute(axis_c) <= 1e9, Status.BAD_INPUT)
+        require(status, reasonable(axis_c), Status.BAD_INPUT)
         c = DEGREE*(axis_c - k.offset_c)
         cos_c = cos(c)
         sin_c = sin(c)
@@ -54,7 +52,7 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
+        require(status, reasonable(ref_c), Status.BAD_INPUT)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     Programs,
-    absolute,
     atan2,
     cos,
     degrees,
@@ -16,6 +15,7 @@ from softkin._array import (
     nearest_on_arc,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -31,9 +31,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -41,11 +39,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(
-            status,
-            (absolute(axis_phi) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_theta) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_phi, axis_r, axis_theta), Status.BAD_INPUT)
         r = axis_r - k.offset_r
         axis_phi_minus_offset_phi = axis_phi - k.offset_phi
         theta = DEGREE*(axis_theta - k.offset_theta)
@@ -78,14 +72,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_phi) <= 1e9) & (absolute(ref_theta) <= 1e9) & (absolute(x) <= 1e9)
-                & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_phi, ref_theta, x, y, z), Status.BAD_INPUT)
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         axis_r = k.offset_r + radius_phi

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     Programs,
-    absolute,
     cos,
     degrees,
     nearest_period,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -28,9 +28,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -38,11 +36,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(
-            status,
-            (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
         a1 = DEGREE*(axis_a1 - k.offset_a1)
         cos_a1 = cos(a1)
         pivot_1_y = k.part_of_pivot_1_y + k.inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
@@ -131,14 +125,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_a1, ref_a2, ref_a3, x, y, z), Status.BAD_INPUT)
         span_1_x = x - k.part_of_pivot_1_x  # rod 1
         span_1_y = y - k.part_of_pivot_1_y  # rod 1
         along_a1 = span_1_x*k.cos_azimuth_1 + span_1_y*k.sin_azimuth_1

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     Programs,
-    absolute,
     cos,
     degrees,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -28,9 +28,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -38,14 +36,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(axis_r) <= 1e9) & (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9)
-                & (absolute(axis_z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_r, axis_x, axis_y, axis_z), Status.BAD_INPUT)
         joint_x = axis_x - k.offset_x
         joint_y = axis_y - k.offset_y
         joint_z = axis_z - k.offset_z
@@ -73,11 +64,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(
-            status,
-            (absolute(ref_r) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_r, x, y, z), Status.BAD_INPUT)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)

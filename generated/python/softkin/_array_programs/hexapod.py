@@ -12,6 +12,7 @@ from softkin._array import (
     cos,
     initial,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -30,9 +31,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(StartedPrograms):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def find_platform(self, given: Values, status: Codes) -> Values:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""
@@ -42,14 +41,7 @@ class ArrayPrograms(StartedPrograms):
         ) = given
         k = self.constants
         # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(axis_l1) <= 1e9) & (absolute(axis_l2) <= 1e9) & (absolute(axis_l3) <= 1e9)
-                & (absolute(axis_l4) <= 1e9) & (absolute(axis_l5) <= 1e9) & (absolute(axis_l6) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6), Status.BAD_INPUT)
         l1 = axis_l1 - k.offset_l1
         l2 = axis_l2 - k.offset_l2
         l3 = axis_l3 - k.offset_l3
@@ -300,11 +292,7 @@ class ArrayPrograms(StartedPrograms):
         ) = start_rotation
         status = passed(axes, start_position, start_rotation)
         # numbers of reasonable size
-        require(
-            status,
-            (absolute(start_x) <= 1e9) & (absolute(start_y) <= 1e9) & (absolute(start_z) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(start_x, start_y, start_z), Status.BAD_INPUT)
         # the platform on its rods, searched from the given start
         found = self.find_platform(
             (
@@ -325,7 +313,7 @@ class ArrayPrograms(StartedPrograms):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(x, y, z), Status.BAD_INPUT)
         arm_1_x = k.platform_1_x*r11 + k.platform_1_y*r12 + k.platform_1_z*r13
         span_1_x = arm_1_x + x - k.base_1_x  # rod 1
         arm_1_y = k.platform_1_x*r21 + k.platform_1_y*r22 + k.platform_1_z*r23

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     Programs,
-    absolute,
     cos,
     degrees,
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -29,9 +29,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -39,14 +37,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_x) <= 1e9)
-                & (absolute(axis_y) <= 1e9) & (absolute(axis_z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_a, axis_b, axis_x, axis_y, axis_z), Status.BAD_INPUT)
         a = DEGREE*(axis_a - k.offset_a)
         cos_a = cos(a)
         b = DEGREE*(axis_b - k.offset_b)
@@ -85,14 +76,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_a, ref_b, x, y, z), Status.BAD_INPUT)
         wrist_x = x - r13*k.tool_length_times_tool_side  # the point that the last joints turn about
         axis_x = k.offset_x + wrist_x
         wrist_y = y - r23*k.tool_length_times_tool_side

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Programs, absolute, passed, require, root
+from softkin._array import Programs, absolute, passed, reasonable, require, root
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -26,7 +24,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
         a1 = axis_a1 - k.offset_a1
         a2 = axis_a2 - k.offset_a2
         pivot_1_x = -0.5*(a1 + k.tcp_link_distance - a2)  # rod 1
@@ -47,7 +45,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(x, y, z), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         root_square_a2 = (k.arm_length + y)*(k.arm_length - y)  # a2: quadratic in the rod 1 (through x) equation

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     Programs,
-    absolute,
     cos,
     degrees,
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -29,9 +29,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -39,11 +37,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(
-            status,
-            (absolute(axis_c) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_z) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_c, axis_r, axis_z), Status.BAD_INPUT)
         r = axis_r - k.offset_r
         c = DEGREE*(axis_c - k.offset_c)
         cos_c = cos(c)
@@ -65,11 +59,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(
-            status,
-            (absolute(ref_c) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_c, x, y, z), Status.BAD_INPUT)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:

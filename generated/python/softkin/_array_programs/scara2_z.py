@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     Programs,
-    absolute,
     cos,
     degrees,
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -30,9 +30,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -40,11 +38,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(
-            status,
-            (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_z) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_a1, axis_a2, axis_z), Status.BAD_INPUT)
         a1 = DEGREE*(axis_a1 - k.offset_a1)
         a2 = DEGREE*(axis_a2 - k.offset_a2)
         a1_plus_a2 = a1 + a2
@@ -72,14 +66,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_a1, ref_a2, x, y, z), Status.BAD_INPUT)
         reach = sqrt(x*x + y*y)
         # 1 - cosine, times the scale
         one_less_cos_a2 = (k.arm_length_1_plus_arm_length_2 + reach)*(k.arm_length_1_plus_arm_length_2 - reach)

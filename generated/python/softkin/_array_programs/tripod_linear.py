@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Programs, absolute, passed, require, root, select
+from softkin._array import Programs, absolute, passed, reasonable, require, root, select
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -26,11 +24,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(
-            status,
-            (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
         a2 = axis_a2 - k.offset_a2
         pivot_2_y = k.part_of_pivot_2_y_2 - a2*k.part_of_pivot_2_y  # rod 2
         a3 = axis_a3 - k.offset_a3
@@ -111,7 +105,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(x, y, z), Status.BAD_INPUT)
         span_1_x = x - k.inner_radius_minus_outer_radius  # rod 1
         z_minus_cos_rail_angle_squared_times_z = z - z*k.cos_rail_angle_squared
         # a1: quadratic in the rod 1 equation

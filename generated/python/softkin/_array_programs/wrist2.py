@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     OrientationPrograms,
-    absolute,
     cos,
     degrees,
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -29,9 +29,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(OrientationPrograms):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -39,7 +37,7 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(status, (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(axis_a, axis_b), Status.BAD_INPUT)
         a = DEGREE*(axis_a - k.offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
@@ -76,7 +74,7 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(ref_a, ref_b), Status.BAD_INPUT)
         r13_of_a = r13/k.tool_side
         r23_of_a = r23/k.tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
@@ -126,11 +124,7 @@ class ArrayPrograms(OrientationPrograms):
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(base_axis_x) <= 1e9) & (absolute(base_axis_y) <= 1e9) & (absolute(base_axis_z) <= 1e9)
-                & (absolute(flange_axis_x) <= 1e9) & (absolute(flange_axis_y) <= 1e9)
-                & (absolute(flange_axis_z) <= 1e9)
-            ),
+            reasonable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z),
             Status.BAD_INPUT,
         )
         flange_along = flange_axis_z*k.roll_axis_offset_z  # what the flange holds, along the axis that it turns about

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     OrientationPrograms,
-    absolute,
     cos,
     degrees,
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -29,9 +29,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(OrientationPrograms):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -39,11 +37,7 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(axes)
         # numbers of reasonable size
-        require(
-            status,
-            (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_c) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_a, axis_b, axis_c), Status.BAD_INPUT)
         b = DEGREE*(axis_b - k.offset_b)
         sin_b = sin(b)
         a = DEGREE*(axis_a - k.offset_a)
@@ -86,11 +80,7 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # numbers of reasonable size
-        require(
-            status,
-            (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_a, ref_b, ref_c), Status.BAD_INPUT)
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
