@@ -10,7 +10,7 @@ from derive.emit.python import calls
 from derive.emit.python.control_flow import array_arm_lines, fixed
 from derive.emit.python.layout import fold
 from derive.emit.python.loops import array_end, array_head
-from derive.emit.python.printer import ArrayPrinter
+from derive.emit.python.printer import ArrayPrinter, words
 from derive.emit.python.program import (
     Method,
     binding_lines,
@@ -35,6 +35,19 @@ from derive.ir.program import (
 )
 from derive.ir.tree import If, Item
 from derive.lowering.scheduling import scheduled
+
+CALLED = frozenset((
+    "DEGREE", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period",
+    "opposite", "passed", "reasonable", "require", "root", "select", "settled", "sin", "solve", "sqrt",
+))  # fmt: skip
+"""What programs on arrays call."""
+TYPES = frozenset(("Codes", "Real", "Reals", "Rotation", "Signs", "Truth", "Turns", "Values", "Vector", "Whole"))
+"""The types that they name."""
+
+
+def named_in(lines: Iterable[str], names: Collection[str]) -> set[str]:
+    """Those of some names that stand in statements."""
+    return words(lines) & set(names)
 
 
 def array_body(method: Method) -> list[str]:

@@ -12,12 +12,12 @@ from jinja2 import Environment
 
 from derive.emit.language import GENERATED, Part, environment
 from derive.emit.python import entries, setup
-from derive.emit.python.arrays import array_body
+from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
 from derive.emit.python.calls import every_root
 from derive.emit.python.layout import WIDTH, fold
 from derive.emit.python.methods import branch, carried, forwards, limits, methods, shared
-from derive.emit.python.printer import ARRAY_NAMES, ScalarPrinter, array_helpers_in, literal, primitives_in
-from derive.emit.python.program import Method, functions, has_loop, has_search, scalar_body, unpacked
+from derive.emit.python.printer import ScalarPrinter, literal, primitives_in
+from derive.emit.python.program import Method, has_search, scalar_body, unpacked
 from derive.emit.python.refusal import explained
 from derive.emit.python.rotation import rotation_functions
 from derive.emit.python.unrolled import can_be_unrolled, has_folds, unrolled
@@ -85,10 +85,6 @@ _EXPORTS = (
     "Axis", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "KinematicsError", "Mechanism", "OrientationImage",
     "Parameter", "Singularity", "Solution", "Status", "catalogue",
 )  # fmt: skip
-_ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Signs", "Turns", "Vector")
-_NAMED_TYPES = ("Real", "Truth", "Whole")
-_ARRAY_HELPERS = ("atan2", "degrees", "elsewhere", "opposite", "root", "select", "sqrt")
-"""What programs on arrays call or name, depending on how an expression is spelled."""
 _CHUNK = 8192
 """Rows of a batch at a time: 64 KiB an array."""
 _MEANINGS = {
@@ -176,7 +172,6 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     scalar = methods(kin)
     arrays = [_untold(m) for m in (*shared(kin), *forwards(kin), branch(kin), limits(kin), *carried(kin))]
     array_programs = _array_programs(kin)
-    loops = ("advanced", "initial", "settled") if any(has_loop(m.program) for m in arrays) else ()
     reasons = explained(reasons_of(kin))
     bodies = [scalar_body(m, reasons) if m.is_explained else scalar_body(_untold(m)) for m in scalar]
     context = {
@@ -200,14 +195,12 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "methods": [{"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)],
     }
     array_methods = [{"head": _array_head(m), "summary": m.summary, "body": array_body(m)} for m in arrays]
-    array_lines = [line for m in array_methods for line in m["body"]]
-    called = {array_programs, "passed", "require", *loops, *array_helpers_in(array_lines, _ARRAY_HELPERS)}
-    shared_types = {"Values"} if any(m.is_shared for m in arrays) else set()
+    array_lines = [line for m in array_methods for line in (*m["head"], *m["body"])]
     array_context = {
         **names,
         "array_programs": array_programs,
-        "imports": _sorted(called | _array_functions(arrays)),
-        "types": _sorted({*_ARRAY_TYPES, *shared_types, *array_helpers_in(array_lines, _NAMED_TYPES)}),
+        "imports": _sorted({array_programs} | named_in(array_lines, CALLED)),
+        "types": _sorted(named_in(array_lines, TYPES)),
         "methods": array_methods,
         "searches": any(map(has_search, kin.shared)),
     }
@@ -235,10 +228,6 @@ def _array_programs(kin: Kinematics) -> str:
     if kin.mechanism.is_orientation:
         return "OrientationPrograms"
     return "Programs" if kin.forward_from is None else "StartedPrograms"
-
-
-def _array_functions(arrays: Sequence[Method]) -> set[str]:
-    return {ARRAY_NAMES.get(f, f) for f in functions(tuple(m.program for m in arrays))} - set(_ARRAY_HELPERS)
 
 
 def _bases(kin: Kinematics) -> dict[str, str]:

@@ -11,6 +11,7 @@ import sympy as sp
 from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, PRODUCT, ExpressionPrinter
 from derive.ir.constants import (
     DEGREE,
+    LARGEST,
 )
 from derive.ir.primitives import (
     Atan2,
@@ -23,10 +24,10 @@ from derive.optimize.inline import Grouped
 TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
-    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "no_offsets", "opposite", "holds",
+    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "no_offsets", "opposite", "holds", "reasonable",
 }  # fmt: skip
 """Names that a generated method uses for itself."""
-ARRAY_NAMES = {"abs": "absolute"}
+_ARRAY_NAMES = {"abs": "absolute"}
 """Primitives that are called something else on arrays."""
 
 
@@ -46,16 +47,10 @@ def literal(value: float) -> str:
 
 def primitives_in(lines: Iterable[str]) -> list[str]:
     """The primitives and constants that statements use, in alphabetical order."""
-    words = _words(lines)
-    return sorted(words & {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "arctan2", "solve", "sqrt"} - {"abs", "select"})
+    return sorted(words(lines) & {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "arctan2", "solve", "sqrt"} - {"abs", "select"})
 
 
-def array_helpers_in(lines: Iterable[str], helpers: Iterable[str]) -> set[str]:
-    """Those of some functions that statements on arrays call."""
-    return _words(lines) & set(helpers)
-
-
-def _words(lines: Iterable[str]) -> set[str]:
+def words(lines: Iterable[str]) -> set[str]:
     """The words of statements, without texts and comments."""
     return {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", re.sub(r'"[^"]*"', "", line).partition("#")[0])}
 
@@ -63,6 +58,14 @@ def _words(lines: Iterable[str]) -> set[str]:
 def is_sum_of_squares(value: sp.Expr) -> bool:
     """Whether a value is no negative number, not even a negative zero."""
     return value.is_Add and all(term.is_Pow and term.exp == 2 for term in value.args)
+
+
+def _numbers_checked(node: sp.Basic) -> list[sp.Basic]:
+    """The values of which a condition asks whether they are numbers of reasonable size, and nothing else."""
+    parts = list(sp.ordered(node.args)) if isinstance(node, sp.And) else [node]
+    if not all(isinstance(p, sp.LessThan) and isinstance(p.lhs, sp.Abs) and p.rhs == LARGEST for p in parts):
+        return []
+    return [part.lhs.args[0] for part in parts]
 
 
 class ScalarPrinter(ExpressionPrinter):
@@ -135,6 +138,8 @@ class ArrayPrinter(ScalarPrinter):
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
         if isinstance(node, sp.Not):
             return f"opposite({self.print(node.args[0])})", ATOM
+        if checked := _numbers_checked(node):
+            return f"reasonable({', '.join(map(self.print, checked))})", ATOM
         if isinstance(node, Root) and is_sum_of_squares(node.args[0]):
             return f"sqrt({self.print(node.args[0])})", ATOM
         if self.modulo_turns and node.is_Mul and len(node.args) == 2 and 1 / DEGREE in node.args:
@@ -144,7 +149,7 @@ class ArrayPrinter(ScalarPrinter):
         return ExpressionPrinter._spell(self, node)
 
     def call(self, key: str, arguments: Sequence[str]) -> str:
-        return f"{ARRAY_NAMES.get(key, key)}({', '.join(arguments)})"
+        return f"{_ARRAY_NAMES.get(key, key)}({', '.join(arguments)})"
 
     def logic(self, word: str) -> str:
         return {"and": "&", "or": "|", "true": "True", "false": "False"}[word]

@@ -8,22 +8,18 @@ from itertools import groupby
 
 import sympy as sp
 
-from derive.emit.expression import FUNCTION_KEYS
 from derive.emit.python import calls as python_calls
 from derive.emit.python.layout import WIDTH, fold, taken_apart, tuple_of
 from derive.emit.python.loops import scalar_end, scalar_head, solve_lines
 from derive.emit.python.printer import ScalarPrinter, literal, spelled
 from derive.emit.python.refusal import PLAIN, Refusals, conjunction
 from derive.ir.constants import (
-    DEGREE,
     EDGE,
 )
 from derive.ir.primitives import (
-    Atan2,
     NearestPeriod,
     Select,
     ToReal,
-    Wrap,
 )
 from derive.ir.program import (
     Call,
@@ -160,33 +156,9 @@ def _turn_lines(let: Let, value: NearestPeriod, printer: ScalarPrinter) -> list[
     ]
 
 
-def functions(programs: Sequence[Program]) -> list[str]:
-    """The primitives and constants that programs use, by their neutral names, in alphabetical order."""
-    found = set()
-    for program in programs:
-        values = [e for s in program.body for e in expressions(s)] + [o.value for o in program.outputs]
-        found |= {"solve"} if has_system(program) else set()
-        for node in (n for v in values for n in sp.preorder_traversal(v)):
-            found |= {FUNCTION_KEYS[type(node)]} if type(node) in FUNCTION_KEYS else set()
-            found |= {"atan2", "cos", "sin"} if isinstance(node, Wrap) and not isinstance(node.args[0], Atan2) else set()
-            found |= {DEGREE.name} if node == DEGREE else set()
-    return sorted(found)
-
-
 def has_search(program: Program) -> bool:
     """Whether a program searches for a root."""
     return any(isinstance(s, FindRoot) for s in program.body)
-
-
-def has_loop(program: Program) -> bool:
-    """Whether a program iterates."""
-    return any(isinstance(s, Iterate) for s in program.body)
-
-
-def has_system(program: Program) -> bool:
-    """Whether a program solves linear equations."""
-    inner = (i for s in program.body if not isinstance(s, Call | FindRoot) for i in (s.step if isinstance(s, Iterate) else (s,)))
-    return any(isinstance(s, Solve) for s in inner)
 
 
 def without_conversions(program: Program) -> Program:

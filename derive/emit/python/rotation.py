@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from derive.emit.python.arrays import array_body
+from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
 from derive.emit.python.methods import ROTATION, ROTATION_ARGUMENT
-from derive.emit.python.printer import ARRAY_NAMES, array_helpers_in, primitives_in
+from derive.emit.python.printer import primitives_in
 from derive.emit.python.program import Method, scalar_body
 from derive.emit.python.refusal import explained
 from derive.equations.rotation_repair import rotation_program
 from derive.ir.passes import untold
 from derive.report.reasons import reasons_of_rotation
-
-_HELPERS = ("Real", "Reals", "elsewhere", "passed", "require", "root", "select", "sqrt", *ARRAY_NAMES.values())
-"""What the function on arrays calls or names."""
 
 
 def rotation_functions() -> dict[str, object]:
@@ -27,5 +24,5 @@ def rotation_functions() -> dict[str, object]:
         "plain": plain,
         "primitives": primitives_in(plain),
         "arrays": arrays,
-        "helpers": sorted(array_helpers_in(arrays, _HELPERS), key=lambda n: (n[0].islower(), n)),
+        "helpers": sorted(named_in(arrays, CALLED | TYPES), key=lambda n: (n[0].islower(), n)),
     }

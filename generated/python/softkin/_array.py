@@ -15,7 +15,7 @@ from softkin._types import Status
 
 __all__ = [
     "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Signs", "Turns", "Vector",
-    "StartedPrograms", "Truth", "Values", "Whole", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "opposite", "passed",
+    "StartedPrograms", "Truth", "Values", "Whole", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "opposite", "passed", "reasonable",
     "require", "root", "select", "settled", "sin", "solve", "sqrt",
 ]  # fmt: skip
 
@@ -41,6 +41,10 @@ _BOTH_SIGNS = np.array([1, -1])
 
 class Programs(ABC):
     """The programs of a mechanism that run on arrays."""
+
+    def __init__(self, constants: Any) -> None:
+        """Programs for a machine; constants: its own."""
+        self.constants = constants
 
     @abstractmethod
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
@@ -88,23 +92,40 @@ class OrientationPrograms(Programs):
 
 def passed(*given: Values) -> Codes:
     """The statuses before any condition: all OK, one for every entry that what is given has together."""
-    return np.zeros(_common_shape([value for part in given for value in _numbers(part)]), np.uint8)
+    return np.zeros(_common_shape(given), np.uint8)
 
 
-def _numbers(values: Values) -> Values:
-    """The values, where they are vectors the numbers in them."""
-    return tuple([entry for value in values for entry in (value if isinstance(value, tuple) else (value,))])
-
-
-def _common_shape(values: Sequence[Any]) -> tuple[int, ...]:
+def _common_shape(values: Values) -> tuple[int, ...]:
     """What the values have together: a value may be the same for all rows, or for all signs of a branch."""
-    return np.broadcast_shapes(*{value.shape for value in values if isinstance(value, np.ndarray)})
+    shapes = _shapes(values)
+    return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
+
+
+def _shapes(values: Values) -> set[tuple[int, ...]]:
+    """The shapes of values, and of those in vectors; a number has none."""
+    found = set()
+    for value in values:
+        if isinstance(value, np.ndarray):
+            found.add(value.shape)
+        elif isinstance(value, tuple):
+            found |= _shapes(value)
+    return found
 
 
 def require(status: Codes, condition: Truth, otherwise: Status) -> None:
     """Give the rows where the condition does not hold their status, unless they have one already."""
     if not everywhere(condition):
         status += np.uint8(otherwise) * (np.logical_not(condition) & (status == Status.OK))
+
+
+def reasonable(*values: Real) -> Truth:
+    """The rows in which all are numbers of reasonable size, at most 1e9."""
+    found: Truth = True
+    for value in values:
+        # Nearly always all of them are; the least and the greatest tell.
+        if not isinstance(value, np.ndarray) or not (value.min() >= -1e9 and value.max() <= 1e9):
+            found = found & (abs(value) <= 1e9)
+    return found
 
 
 def everywhere(condition: Truth) -> bool:
@@ -126,7 +147,7 @@ def elsewhere(condition: Truth, values: Values, other: Callable[..., Values], gi
         return values
     if not isinstance(condition, np.ndarray):
         return other(*given)
-    shape = _common_shape([condition, *values, *given])
+    shape = _common_shape((condition, values, given))
     rows = np.nonzero(np.broadcast_to(~condition, shape))
     found = other(*[np.broadcast_to(v, shape)[rows] if isinstance(v, np.ndarray) else v for v in given])
     return tuple([_replaced(value, rows, new, shape) for value, new in zip(values, found, strict=True)])

@@ -160,6 +160,15 @@ def test_every_slot_of_a_row_keeps_its_first_failure(data: st.DataObject) -> Non
     assert (status == expected).all()
 
 
+def test_numbers_of_reasonable_size() -> None:
+    rows, slots = np.array([1e9, -1e9, 1.1e9, math.nan, -math.inf]), np.array([[0.0], [-2e9]])
+    assert _array.reasonable(rows[:2], 5.0, np.zeros((2, 1))) is True
+    assert np.asarray(_array.reasonable(rows, 5.0)).tolist() == [True, True, False, False, False]
+    assert np.asarray(_array.reasonable(rows[:2], slots)).tolist() == [[True], [False]]
+    assert np.asarray(_array.reasonable(rows, slots)).tolist() == [[True, True, False, False, False], [False] * 5]
+    assert not any(_array.reasonable(wrong) for wrong in (1.1e9, math.nan, -math.inf))
+
+
 @given(st.data())
 def test_values_of_any_shapes_are_chosen_together(data: st.DataObject) -> None:
     """A condition, what holds, and what is given elsewhere: each may be the same for rows or for signs, or for all."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import OrientationPrograms, absolute, passed, require
+from softkin._array import OrientationPrograms, passed, reasonable, require
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(OrientationPrograms):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -47,11 +45,7 @@ class ArrayPrograms(OrientationPrograms):
         # inputs must be numbers, and of reasonable size
         require(
             status,
-            (
-                (absolute(base_axis_x) <= 1e9) & (absolute(base_axis_y) <= 1e9) & (absolute(base_axis_z) <= 1e9)
-                & (absolute(flange_axis_x) <= 1e9) & (absolute(flange_axis_y) <= 1e9)
-                & (absolute(flange_axis_z) <= 1e9)
-            ),
+            reasonable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z),
             Status.BAD_INPUT,
         )
         # the flange's part along the axis about which the flange turns
