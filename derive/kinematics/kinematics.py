@@ -78,7 +78,7 @@ class Kinematics:
                      Among its outputs per axis: `unlimited_a1` (0/1), `lower_a1`, `upper_a1` (effective limits as
                      GetAxisProperties reports them), and `check_limits` (0/1).
     setup_less_windows   as setup, less `lowest_a1` `highest_a1` `single_a1` `mid_a1` of the axes: where drives hand over limits
-                     of their own, `parameters.limits_of_axis` gives these; None where no axis has turns to choose from
+                     of their own, `windows.limits_of_axis` gives these; None where no axis has turns to choose from
     forward          axis_* → x y z r11…r33, and `branch_<name>` per branch: the signed margin, positive = byte 1,
                      at most 1e-11 in size = byte 3 (the branches coincide)
     forward_from     axis_*, start_x … start_z, start_r11 … start_r33 → as forward, which is iterative and starts at a home pose;

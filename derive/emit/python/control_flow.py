@@ -19,7 +19,7 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 
 import sympy as sp
 
-from derive.emit.python.layout import WIDTH, fold, taken_apart, tuple_of
+from derive.emit.python.layout import fold, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.program import (
     Let,
@@ -52,7 +52,7 @@ def array_arm_lines(
         *_indented([*fails, *fold(f"return {answer}")]),
         "",
         *holds,
-        *_assigned(results, f"elsewhere({condition}, {answer}, {function}, {tuple_of(list(kinds))})"),
+        *taken_apart(results, f"elsewhere({condition}, {answer}, {function}, {tuple_of(list(kinds))})"),
     ]
 
 
@@ -68,13 +68,6 @@ def _unused(function: str, holds: Sequence[str]) -> str:
         number += 1
         found = f"{function}_{number}"
     return found
-
-
-def _assigned(names: list[str], value: str) -> list[str]:
-    first = fold(f"{', '.join(names) if len(names) > 1 else f'({names[0]},)'} = {value}")
-    if len(first[0]) <= WIDTH:
-        return first
-    return [*fold(f"found = {value}"), *taken_apart(names, "found")]
 
 
 def fixed(body: Iterable[Statement], constants: Iterable[sp.Symbol]) -> set[sp.Symbol]:

@@ -23,7 +23,7 @@ from derive.optimize.inline import Grouped
 TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
-    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "refused", "no_offsets", "opposite",
+    "given", "found", "are_usable", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "refused", "no_offsets", "opposite",
 }  # fmt: skip
 """Names that a generated method uses for itself."""
 ARRAY_NAMES = {"abs": "absolute"}
@@ -46,8 +46,8 @@ def literal(value: float) -> str:
 
 def primitives_in(lines: Iterable[str]) -> list[str]:
     """The primitives and constants that statements use, in alphabetical order."""
-    words = _words(lines)
-    return sorted(words & {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "arctan2", "solve", "sqrt"} - {"abs", "select"})
+    known = {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "are_usable", "arctan2", "solve", "sqrt"} - {"abs", "select"}
+    return sorted(_words(lines) & known)
 
 
 def array_helpers_in(lines: Iterable[str], helpers: Iterable[str]) -> set[str]:

@@ -11,7 +11,7 @@ import sympy as sp
 from derive.emit.expression import FUNCTION_KEYS
 from derive.emit.python import calls as python_calls
 from derive.emit.python.control_flow import array_arm_lines, fixed
-from derive.emit.python.layout import WIDTH, fold, taken_apart, tuple_of
+from derive.emit.python.layout import assigned, fits, fold, taken_apart, tuple_of
 from derive.emit.python.loops import array_end, array_head, scalar_end, scalar_head, solve_lines
 from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, literal, spelled
 from derive.emit.python.refusal import PLAIN, Refusals, conjunction
@@ -95,7 +95,7 @@ class Method:
 
 def scalar_body(method: Method, refusals: Refusals = PLAIN) -> list[str]:
     """The body on plain numbers: the first condition that does not hold refuses."""
-    lines = [*unpacked(method), *_constants(method, "self._constants"), *statement_lines(method.program, refusals, _SCALAR)]
+    lines = [*unpacked(method), *constant_lines(method), *statement_lines(method.program, refusals, _SCALAR)]
     return [*lines, *fold(f"return {_values(method, _SCALAR) or refusals.success}")]
 
 
@@ -111,7 +111,7 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
     lines: list[str] = []
     for item, same in grouped(items):
         if isinstance(item, Require):
-            lines += _refusing(same, refusals)
+            lines += refusals.lines(same)
         elif isinstance(item, Iterate):
             lines += [*scalar_head(item, printer), *_step(item, printer)]
             lines += scalar_end(item, conjunction([item.done]), refusals.of_loop(item), printer)
@@ -124,10 +124,6 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
     return lines
 
 
-def _refusing(requires: Sequence[Require], refusals: Refusals) -> list[str]:
-    return [*_note(requires[0].comment), *refusals.lines(requires)]
-
-
 def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """A binding, or a choice between two sides that bind the same or refuse."""
     if isinstance(item, Arms):
@@ -137,7 +133,7 @@ def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[
         holds, fails = (_side(side, refusals, printer) for side in sides)
         return [*head, *holds, "else:", *fails]
     if isinstance(item, Require):
-        return _refusing([item], refusals)
+        return refusals.lines([item])
     if isinstance(item, Let) and isinstance(item.value, NearestPeriod):
         return _turn_lines(item, item.value, printer)
     assert isinstance(item, Let | Solve)
@@ -176,7 +172,7 @@ def array_body(method: Method) -> list[str]:
 
 def array_statements(method: Method) -> list[str]:
     """The same without the return."""
-    lines = [*unpacked(method), *_constants(method, "self.constants")]
+    lines = [*unpacked(method), *constant_lines(method, "self.constants")]
     if not method.is_shared:
         first = method.arguments[0]
         lines.append(f"status = passed({first.name}{'[0]' if first.kind == 'Rotation' else ''})")
@@ -249,7 +245,6 @@ def binding_lines(statement: Let | Solve, printer: ScalarPrinter) -> list[str]:
 
 
 def _step(loop: Iterate, printer: ScalarPrinter) -> list[str]:
-    """The step of a loop: let lines are folded as if they were not indented, so they are a little longer."""
     return [f"    {line}" for s in loop.step for line in binding_lines(s, printer)]
 
 
@@ -259,7 +254,7 @@ def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
     if isinstance(let.value, Select | ToReal) and value.startswith("("):
         value = value[1:-1]
     line = f"{spelled(let.name.name)} = {value}"
-    if let.comment and len(line) + len(let.comment) + 4 <= WIDTH:
+    if let.comment and fits(line, let.comment):
         return [f"{line}  # {let.comment}"]
     return [*_note(let.comment), *fold(line)]
 
@@ -317,9 +312,10 @@ def names(shape: Shape) -> Iterator[str]:
             yield from names(part)
 
 
-def _constants(method: Method, owner: str) -> list[str]:
+def constant_lines(method: Method, owner: str = "self._constants") -> list[str]:
+    """The constants that a method reads, by their names."""
     constants = constants_of(method)
-    return [f"k = {owner}", *(f"{spelled(c)} = k.{c}" for c in constants)] if constants else []
+    return [f"k = {owner}", *assigned({spelled(c): f"k.{c}" for c in constants})] if constants else []
 
 
 def constants_of(method: Method) -> list[str]:

@@ -30,71 +30,69 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from softkin._configuration import Criterion
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import root, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import are_usable, root, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.p2x_type1 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    arm_length_1: float
-    arm_length_2: float
-    rail_y_1: float
-    rail_y_2: float
-    tcp_offset_1: float
-    tcp_offset_2: float
-    offset_a1: float
-    offset_a2: float
-    tcp_above: bool
-    min_type2_margin: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    machine_scale: float
-    tie: float
-    apart_2_y: float
-    assembly_sign: float
-    apart_2_y_squared: float
-    part_of_normal_divisor: float
-    arm_length_1_squared_times_rounding: float
-    arm_length_1_plus_arm_length_2: float
-    arm_length_1_minus_arm_length_2: float
-    part_of_along_centres: float
-    machine_scale_times_plane: float
-    arm_length_2_squared_times_rounding: float
-    part_of_type2_arms_aligned: float
-    arm_length_1_times_arm_length_2: float
-    machine_scale_squared_times_free_angle: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        arm_length_1, arm_length_2, rail_y_1 = p["arm_length_1"], p["arm_length_2"], p["rail_y_1"]
+        rail_y_2, tcp_offset_1, tcp_offset_2 = p["rail_y_2"], p["tcp_offset_1"], p["tcp_offset_2"]
+        offset_a1, offset_a2, tcp_above = p["offset_a1"], p["offset_a2"], bool(p["tcp_above"])
+        min_type2_margin = p["min_type2_margin"]
+        if not (abs(rail_y_1 - rail_y_2) < arm_length_1 + arm_length_2):
+            raise machine._refusal(
+                "the arms must be able to meet between the rails",
+                "arm_length_1",
+                "arm_length_2",
+                "rail_y_1",
+                "rail_y_2",
+            )
+        self.lowest_a1, self.highest_a1, *_ = machine._window("a1")
+        self.lowest_a2, self.highest_a2, *_ = machine._window("a2")
+        machine_scale = arm_length_1 + arm_length_2  # a length of the machine
+        tie = 1e-12 * machine_scale * machine_scale  # squared distances closer than this are equal
+        apart_2_y = rail_y_2 - rail_y_1
+        assembly_sign = 1.0 if tcp_above else -1.0  # assembly mode of this machine
+        apart_2_y_squared = apart_2_y * apart_2_y
+        part_of_normal_divisor = 1e-22 * arm_length_1 * arm_length_1
+        arm_length_1_squared_times_rounding = 1e-12 * arm_length_1 * arm_length_1
+        arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
+        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
+        part_of_along_centres = arm_length_1_minus_arm_length_2 * arm_length_1_plus_arm_length_2
+        machine_scale_times_plane = 1e-6 * machine_scale
+        arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
+        part_of_type2_arms_aligned = assembly_sign / (arm_length_1 * arm_length_2)
+        arm_length_1_times_arm_length_2 = arm_length_1 * arm_length_2
+        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        self.arm_length_1, self.arm_length_2, self.rail_y_1 = arm_length_1, arm_length_2, rail_y_1
+        self.rail_y_2, self.tcp_offset_1, self.tcp_offset_2 = rail_y_2, tcp_offset_1, tcp_offset_2
+        self.offset_a1, self.offset_a2, self.min_type2_margin = offset_a1, offset_a2, min_type2_margin
+        self.machine_scale, self.tie, self.apart_2_y, self.assembly_sign = machine_scale, tie, apart_2_y, assembly_sign
+        self.apart_2_y_squared, self.part_of_normal_divisor = apart_2_y_squared, part_of_normal_divisor
+        self.arm_length_1_squared_times_rounding = arm_length_1_squared_times_rounding
+        self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
+        self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
+        self.part_of_along_centres, self.machine_scale_times_plane = part_of_along_centres, machine_scale_times_plane
+        self.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding
+        self.part_of_type2_arms_aligned = part_of_type2_arms_aligned
+        self.arm_length_1_times_arm_length_2 = arm_length_1_times_arm_length_2
+        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
 
 
 class P2XType1(OffsetKinematics):
@@ -103,7 +101,7 @@ class P2XType1(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2X_Type1"
     AXES = (
@@ -111,69 +109,26 @@ class P2XType1(OffsetKinematics):
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="arm_length_1", kind="length", unit="u", meaning="Length of arm 1", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
+        Parameter.of("length", "arm_length_1", "Length of arm 1"),
+        Parameter.of("length", "arm_length_2", "Length of arm 2"),
+        Parameter.of("distance", "rail_y_1", "Y of rail 1"),
+        Parameter.of("distance", "rail_y_2", "Y of rail 2"),
+        Parameter.of("distance", "tcp_offset_1", "Plate joint of arm 1, to the left of the centre"),
+        Parameter.of("distance", "tcp_offset_2", "Plate joint of arm 2, to the right of the centre"),
+        Parameter.of("distance", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "tcp_above", "assembly mode: above instead of below"),
+        Parameter.of(
+            "ratio",
+            "min_type2_margin",
+            "least distance from a type 2 singularity, a number without a unit; 0: off",
+            default=0.001,
         ),
-        Parameter(
-            name="arm_length_2", kind="length", unit="u", meaning="Length of arm 2", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="rail_y_1", kind="distance", unit="u", meaning="Y of rail 1", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="rail_y_2", kind="distance", unit="u", meaning="Y of rail 2", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_offset_1", kind="distance", unit="u",
-            meaning="Plate joint of arm 1, to the left of the centre", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_offset_2", kind="distance", unit="u",
-            meaning="Plate joint of arm 2, to the right of the centre", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a1", kind="distance", unit="u", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="distance", unit="u", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="distance", unit="u", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="distance", unit="u", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="distance", unit="u", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="distance", unit="u", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_above", kind="flag", unit="", meaning="assembly mode: above instead of below", low=0.0,
-            high=1.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least distance from a type 2 singularity, a number without a unit; 0: off", low=0.0,
-            high=1.0, low_is_open=False, default=0.001,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="carriage_1", kind="branch", branches=("left", "right"), default=1),
@@ -190,10 +145,23 @@ class P2XType1(OffsetKinematics):
     DISTANCE_AXES = (0, 1)
 
     def __init__(
-        self, *, arm_length_1: float, arm_length_2: float, rail_y_1: float = 0.0, rail_y_2: float = 0.0,
-        tcp_offset_1: float = 0.0, tcp_offset_2: float = 0.0, offset_a1: float = 0.0, offset_a2: float = 0.0,
-        lower_a1: float = 0.0, upper_a1: float = 0.0, lower_a2: float = 0.0, upper_a2: float = 0.0,
-        tcp_above: bool = False, min_type2_margin: float = 0.001, check_limits: bool = True,
+        self,
+        *,
+        arm_length_1: float,
+        arm_length_2: float,
+        rail_y_1: float = 0.0,
+        rail_y_2: float = 0.0,
+        tcp_offset_1: float = 0.0,
+        tcp_offset_2: float = 0.0,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        tcp_above: bool = False,
+        min_type2_margin: float = 0.001,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -213,129 +181,21 @@ class P2XType1(OffsetKinematics):
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            arm_length_1, arm_length_2, rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2, offset_a1, offset_a2,
-            lower_a1, upper_a1, lower_a2, upper_a2, tcp_above, min_type2_margin, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(lowest_a1=-1e12, lowest_a2=-1e12, highest_a1=1e12, highest_a2=1e12)
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, arm_length_1: float, arm_length_2: float, rail_y_1: float, rail_y_2: float, tcp_offset_1: float,
-        tcp_offset_2: float, offset_a1: float, offset_a2: float, lower_a1: float, upper_a1: float,
-        lower_a2: float, upper_a2: float, tcp_above: bool, min_type2_margin: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (arm_length_1 <= 1e9 and arm_length_1 > 0.0):
-            raise self._refusal("arm_length_1: Length of arm 1", arm_length_1=arm_length_1)
-        if not (arm_length_2 <= 1e9 and arm_length_2 > 0.0):
-            raise self._refusal("arm_length_2: Length of arm 2", arm_length_2=arm_length_2)
-        if not (rail_y_1 >= -1e9 and rail_y_1 <= 1e9):
-            raise self._refusal("rail_y_1: Y of rail 1", rail_y_1=rail_y_1)
-        if not (rail_y_2 >= -1e9 and rail_y_2 <= 1e9):
-            raise self._refusal("rail_y_2: Y of rail 2", rail_y_2=rail_y_2)
-        if not (tcp_offset_1 >= -1e9 and tcp_offset_1 <= 1e9):
-            raise self._refusal(
-                "tcp_offset_1: Plate joint of arm 1, to the left of the centre", tcp_offset_1=tcp_offset_1,
-            )
-        if not (tcp_offset_2 >= -1e9 and tcp_offset_2 <= 1e9):
-            raise self._refusal(
-                "tcp_offset_2: Plate joint of arm 2, to the right of the centre", tcp_offset_2=tcp_offset_2,
-            )
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
-            raise self._refusal(
-                "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",
-                min_type2_margin=min_type2_margin,
-            )
-        if not (abs(rail_y_1 - rail_y_2) < arm_length_1 + arm_length_2):
-            raise self._refusal(
-                "the arms must be able to meet between the rails", arm_length_1=arm_length_1,
-                arm_length_2=arm_length_2, rail_y_1=rail_y_1, rail_y_2=rail_y_2,
-            )
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: no limit
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: no limit
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        machine_scale = arm_length_1 + arm_length_2  # a length of the machine
-        tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
-        apart_2_y = rail_y_2 - rail_y_1
-        assembly_sign = 1.0 if tcp_above else -1.0  # assembly mode of this machine
-        apart_2_y_squared = apart_2_y*apart_2_y
-        part_of_normal_divisor = 1e-22*arm_length_1*arm_length_1
-        arm_length_1_squared_times_rounding = 1e-12*arm_length_1*arm_length_1
-        arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
-        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
-        part_of_along_centres = arm_length_1_minus_arm_length_2*arm_length_1_plus_arm_length_2
-        machine_scale_times_plane = 1e-6*machine_scale
-        arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
-        part_of_type2_arms_aligned = assembly_sign/(arm_length_1*arm_length_2)
-        arm_length_1_times_arm_length_2 = arm_length_1*arm_length_2
-        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
-        return Constants(
-            arm_length_1=arm_length_1, arm_length_2=arm_length_2, rail_y_1=rail_y_1, rail_y_2=rail_y_2,
-            tcp_offset_1=tcp_offset_1, tcp_offset_2=tcp_offset_2, offset_a1=offset_a1, offset_a2=offset_a2,
-            tcp_above=tcp_above, min_type2_margin=min_type2_margin, check_limits=check_limits,
-            lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
-            highest_a1=highest_a1, lower_a2=effective_lower_a2, upper_a2=effective_upper_a2,
-            unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2, machine_scale=machine_scale,
-            tie=tie, apart_2_y=apart_2_y, assembly_sign=assembly_sign, apart_2_y_squared=apart_2_y_squared,
-            part_of_normal_divisor=part_of_normal_divisor,
-            arm_length_1_squared_times_rounding=arm_length_1_squared_times_rounding,
-            arm_length_1_plus_arm_length_2=arm_length_1_plus_arm_length_2,
-            arm_length_1_minus_arm_length_2=arm_length_1_minus_arm_length_2,
-            part_of_along_centres=part_of_along_centres, machine_scale_times_plane=machine_scale_times_plane,
-            arm_length_2_squared_times_rounding=arm_length_2_squared_times_rounding,
-            part_of_type2_arms_aligned=part_of_type2_arms_aligned,
-            arm_length_1_times_arm_length_2=arm_length_1_times_arm_length_2,
-            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        apart_2_y = k.apart_2_y
-        apart_2_y_squared = k.apart_2_y_squared
-        arm_length_1 = k.arm_length_1
+        apart_2_y, apart_2_y_squared, arm_length_1 = k.apart_2_y, k.apart_2_y_squared, k.arm_length_1
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_2 = k.arm_length_2
-        assembly_sign = k.assembly_sign
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
-        part_of_normal_divisor = k.part_of_normal_divisor
-        rail_y_1 = k.rail_y_1
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        arm_length_1_squared_times_rounding, arm_length_2 = k.arm_length_1_squared_times_rounding, k.arm_length_2
+        assembly_sign, offset_a1, offset_a2 = k.assembly_sign, k.offset_a1, k.offset_a2
+        part_of_along_centres, part_of_normal_divisor = k.part_of_along_centres, k.part_of_normal_divisor
+        rail_y_1, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.tcp_offset_1, k.tcp_offset_2
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -344,32 +204,35 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        normal_square = apart_2_y_squared + apart_2_x * apart_2_x  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0
+        one_by_normal_square = 1.0 / normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(between_centres - arm_length_1_plus_arm_length_2)
-            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
+            0.25
+            * (between_centres - arm_length_1_plus_arm_length_2)
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        foot_y = along_centres*apart_2_y
-        y = foot_y + rail_y_1 + apart_2_x*rise
+        along_centres = 0.5 * (normal_square + part_of_along_centres) * one_by_normal_square
+        foot_x = along_centres * apart_2_x
+        rise = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x - apart_2_y * rise
+        foot_y = along_centres * apart_2_y
+        y = foot_y + rail_y_1 + apart_2_x * rise
         span_1_x = x - tcp_offset_1  # rod 1
-        branch_carriage_1 = (span_1_x - a1)/arm_length_1
+        branch_carriage_1 = (span_1_x - a1) / arm_length_1
         span_2_x = tcp_offset_2 + x  # rod 2
-        branch_carriage_2 = (a2 - span_2_x)/arm_length_2
+        branch_carriage_2 = (a2 - span_2_x) / arm_length_2
         return (
             (x, y, 0.0),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -380,14 +243,10 @@ class P2XType1(OffsetKinematics):
         """The rotation of the frame."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        apart_2_y_squared = k.apart_2_y_squared
-        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        apart_2_y_squared, arm_length_1_minus_arm_length_2 = k.apart_2_y_squared, k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_normal_divisor = k.part_of_normal_divisor
-        tcp_offset_1 = k.tcp_offset_1
+        arm_length_1_squared_times_rounding, offset_a1 = k.arm_length_1_squared_times_rounding, k.offset_a1
+        offset_a2, part_of_normal_divisor, tcp_offset_1 = k.offset_a2, k.part_of_normal_divisor, k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -397,16 +256,19 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        normal_square = apart_2_y_squared + apart_2_x * apart_2_x  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0
         # the square of the height over the centres
         height_square = (
-            0.25*(between_centres - arm_length_1_plus_arm_length_2)
-            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)/normal_square
+            0.25
+            * (between_centres - arm_length_1_plus_arm_length_2)
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (arm_length_1_plus_arm_length_2 + between_centres)
+            / normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
@@ -414,58 +276,51 @@ class P2XType1(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2 = signs
         k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_2 = k.arm_length_2
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        machine_scale_times_plane = k.machine_scale_times_plane
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
-        # numbers of reasonable size
-        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
+        arm_length_1, arm_length_1_squared_times_rounding = k.arm_length_1, k.arm_length_1_squared_times_rounding
+        arm_length_2, arm_length_2_squared_times_rounding = k.arm_length_2, k.arm_length_2_squared_times_rounding
+        machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
+        offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
+        rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
+        if not are_usable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         span_1_y = y - rail_y_1  # rod 1
-        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        # a1: quadratic in the rod 1 equation
+        root_square_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
-            missing = 0.5*(abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
+            missing = 0.5 * (abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_y = y - rail_y_2  # rod 2
-        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        # a2: quadratic in the rod 2 equation
+        root_square_a2 = (arm_length_2 + span_2_y) * (arm_length_2 - span_2_y)
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
-            missing = 0.5*(abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
+            missing = 0.5 * (abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_1_x = x - tcp_offset_1  # rod 1
-        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
+        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0) * sigma_carriage_1
         pivot_1_x = a1 + tcp_offset_1  # rod 1
         rod_1_x = x - pivot_1_x
         span_2_x = tcp_offset_2 + x  # rod 2
-        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
+        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0) * sigma_carriage_2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         rod_2_x = x - pivot_2_x
-        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -475,47 +330,25 @@ class P2XType1(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
+        highest_a1, highest_a2, lowest_a1, lowest_a2 = k.highest_a1, k.highest_a2, k.lowest_a1, k.lowest_a2
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond("A1", axis_a1, lowest_a1, highest_a1, "u")
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond("A2", axis_a2, lowest_a2, highest_a2, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        apart_2_y = k.apart_2_y
-        apart_2_y_squared = k.apart_2_y_squared
-        arm_length_1 = k.arm_length_1
+        apart_2_y, apart_2_y_squared, arm_length_1 = k.apart_2_y, k.apart_2_y_squared, k.arm_length_1
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_1_times_arm_length_2 = k.arm_length_1_times_arm_length_2
-        arm_length_2 = k.arm_length_2
-        assembly_sign = k.assembly_sign
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
-        part_of_normal_divisor = k.part_of_normal_divisor
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        arm_length_1_times_arm_length_2, arm_length_2 = k.arm_length_1_times_arm_length_2, k.arm_length_2
+        assembly_sign, offset_a1, offset_a2 = k.assembly_sign, k.offset_a1, k.offset_a2
+        part_of_along_centres, part_of_normal_divisor = k.part_of_along_centres, k.part_of_normal_divisor
+        rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -524,58 +357,54 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        normal_square = apart_2_y_squared + apart_2_x * apart_2_x  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0
+        one_by_normal_square = 1.0 / normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(between_centres - arm_length_1_plus_arm_length_2)
-            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
+            0.25
+            * (between_centres - arm_length_1_plus_arm_length_2)
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
+        along_centres = 0.5 * (normal_square + part_of_along_centres) * one_by_normal_square
+        foot_x = along_centres * apart_2_x
+        rise = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x - apart_2_y * rise
         span_1_x = x - tcp_offset_1  # rod 1
-        margin_upright_1 = (span_1_x - a1)/arm_length_1
+        margin_upright_1 = (span_1_x - a1) / arm_length_1
         span_2_x = tcp_offset_2 + x  # rod 2
-        margin_upright_2 = (a2 - span_2_x)/arm_length_2
+        margin_upright_2 = (a2 - span_2_x) / arm_length_2
         rod_1_x = x - pivot_1_x
-        foot_y = along_centres*apart_2_y
-        y = foot_y + rail_y_1 + apart_2_x*rise
+        foot_y = along_centres * apart_2_y
+        y = foot_y + rail_y_1 + apart_2_x * rise
         rod_1_y = y - rail_y_1
         rod_2_x = x - pivot_2_x
         rod_2_y = y - rail_y_2
-        margin_arms_aligned = (rod_1_x*rod_2_y - rod_1_y*rod_2_x)/arm_length_1_times_arm_length_2
+        margin_arms_aligned = (rod_1_x * rod_2_y - rod_1_y * rod_2_x) / arm_length_1_times_arm_length_2
         return (margin_upright_1, margin_upright_2, margin_arms_aligned)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        apart_2_y = k.apart_2_y
-        apart_2_y_squared = k.apart_2_y_squared
+        apart_2_y, apart_2_y_squared = k.apart_2_y, k.apart_2_y_squared
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        machine_scale_squared_times_free_angle = k.machine_scale_squared_times_free_angle
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
-        part_of_normal_divisor = k.part_of_normal_divisor
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        arm_length_1_squared_times_rounding, assembly_sign = k.arm_length_1_squared_times_rounding, k.assembly_sign
+        machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
+        offset_a2, part_of_along_centres = k.offset_a2, k.part_of_along_centres
+        part_of_normal_divisor, rail_y_1, rail_y_2 = k.part_of_normal_divisor, k.rail_y_1, k.rail_y_2
+        tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -584,45 +413,48 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        normal_square = apart_2_y_squared + apart_2_x * apart_2_x  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0
+        one_by_normal_square = 1.0 / normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(between_centres - arm_length_1_plus_arm_length_2)
-            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
+            0.25
+            * (between_centres - arm_length_1_plus_arm_length_2)
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
-        rise = root(height_square*one_by_normal_square)*assembly_sign
+        rise = root(height_square * one_by_normal_square) * assembly_sign
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_y = along_centres*apart_2_y
-        y = foot_y + rail_y_1 + apart_2_x*rise
-        slope_1_by_y = 2.0*(y - rail_y_1)
-        foot_x = along_centres*apart_2_x
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        slope_2_by_x = 2.0*(x - pivot_2_x)
-        slope_1_by_y_times_slope_2_by_x = slope_1_by_y*slope_2_by_x
-        slope_1_by_x = 2.0*(x - pivot_1_x)
-        slope_2_by_y = 2.0*(y - rail_y_2)
-        slope_1_by_x_times_slope_2_by_y = -slope_1_by_x*slope_2_by_y
+        along_centres = 0.5 * (normal_square + part_of_along_centres) * one_by_normal_square
+        foot_y = along_centres * apart_2_y
+        y = foot_y + rail_y_1 + apart_2_x * rise
+        slope_1_by_y = 2.0 * (y - rail_y_1)
+        foot_x = along_centres * apart_2_x
+        x = foot_x + pivot_1_x - apart_2_y * rise
+        slope_2_by_x = 2.0 * (x - pivot_2_x)
+        slope_1_by_y_times_slope_2_by_x = slope_1_by_y * slope_2_by_x
+        slope_1_by_x = 2.0 * (x - pivot_1_x)
+        slope_2_by_y = 2.0 * (y - rail_y_2)
+        slope_1_by_x_times_slope_2_by_y = -slope_1_by_x * slope_2_by_y
         # of the closure by the position: zero in a type 2 singularity
         determinant = -slope_1_by_x_times_slope_2_by_y - slope_1_by_y_times_slope_2_by_x
         # nothing controls the plate
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
-        one_by_determinant_divisor = 1.0/determinant
-        part = one_by_determinant_divisor*slope_1_by_x*slope_2_by_x
+        one_by_determinant_divisor = 1.0 / determinant
+        part = one_by_determinant_divisor * slope_1_by_x * slope_2_by_x
         return (
             (
-                -one_by_determinant_divisor*slope_1_by_x_times_slope_2_by_y,
-                -one_by_determinant_divisor*slope_1_by_y_times_slope_2_by_x,
+                -one_by_determinant_divisor * slope_1_by_x_times_slope_2_by_y,
+                -one_by_determinant_divisor * slope_1_by_y_times_slope_2_by_x,
             ),
             (-part, part),
         )
@@ -632,31 +464,19 @@ class P2XType1(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
         sigma_carriage_1, sigma_carriage_2 = signs
         k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_2 = k.arm_length_2
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        machine_scale_times_plane = k.machine_scale_times_plane
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
-        # numbers of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
-        ):
+        arm_length_1, arm_length_1_squared_times_rounding = k.arm_length_1, k.arm_length_1_squared_times_rounding
+        arm_length_2, arm_length_2_squared_times_rounding = k.arm_length_2, k.arm_length_2_squared_times_rounding
+        machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
+        offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
+        rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
+        if not are_usable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
@@ -664,32 +484,34 @@ class P2XType1(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_y = y - point_y  # the flange behind the point
         span_1_y = flange_y - rail_y_1  # rod 1
-        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        # a1: quadratic in the rod 1 equation
+        root_square_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
-            missing = 0.5*(abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
+            missing = 0.5 * (abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_y = flange_y - rail_y_2  # rod 2
-        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        # a2: quadratic in the rod 2 equation
+        root_square_a2 = (arm_length_2 + span_2_y) * (arm_length_2 - span_2_y)
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
-            missing = 0.5*(abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
+            missing = 0.5 * (abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         flange_x = x - point_x  # the flange behind the point
         span_1_x = flange_x - tcp_offset_1  # rod 1
-        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
+        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0) * sigma_carriage_1
         pivot_1_x = a1 + tcp_offset_1  # rod 1
         rod_1_x = flange_x - pivot_1_x
         span_2_x = flange_x + tcp_offset_2  # rod 2
-        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
+        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0) * sigma_carriage_2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         rod_2_x = flange_x - pivot_2_x
-        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -699,20 +521,13 @@ class P2XType1(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        apart_2_y = k.apart_2_y
-        apart_2_y_squared = k.apart_2_y_squared
-        arm_length_1 = k.arm_length_1
+        apart_2_y, apart_2_y_squared, arm_length_1 = k.apart_2_y, k.apart_2_y_squared, k.arm_length_1
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_2 = k.arm_length_2
-        assembly_sign = k.assembly_sign
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
-        part_of_normal_divisor = k.part_of_normal_divisor
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        arm_length_1_squared_times_rounding, arm_length_2 = k.arm_length_1_squared_times_rounding, k.arm_length_2
+        assembly_sign, offset_a1, offset_a2 = k.assembly_sign, k.offset_a1, k.offset_a2
+        part_of_along_centres, part_of_normal_divisor = k.part_of_along_centres, k.part_of_normal_divisor
+        tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -721,30 +536,33 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        normal_square = apart_2_y_squared + apart_2_x * apart_2_x  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)
-        one_by_normal_square = 1.0/normal_square
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0
+        one_by_normal_square = 1.0 / normal_square
         # the square of the height over the centres
         height_square = (
-            0.25*(between_centres - arm_length_1_plus_arm_length_2)
-            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
+            0.25
+            * (between_centres - arm_length_1_plus_arm_length_2)
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the height, as a share
-        along_centres = 0.5*(normal_square + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        flange_x = foot_x + pivot_1_x - apart_2_y*rise
+        along_centres = 0.5 * (normal_square + part_of_along_centres) * one_by_normal_square
+        foot_x = along_centres * apart_2_x
+        rise = root(height_square * one_by_normal_square) * assembly_sign
+        flange_x = foot_x + pivot_1_x - apart_2_y * rise
         span_1_x = flange_x - tcp_offset_1  # rod 1
-        branch_carriage_1 = (span_1_x - a1)/arm_length_1
+        branch_carriage_1 = (span_1_x - a1) / arm_length_1
         span_2_x = flange_x + tcp_offset_2  # rod 2
-        branch_carriage_2 = (a2 - span_2_x)/arm_length_2
+        branch_carriage_2 = (a2 - span_2_x) / arm_length_2
         return (branch_carriage_1, branch_carriage_2)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -758,8 +576,7 @@ class P2XType1(OffsetKinematics):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     @property
     def _criteria(self) -> tuple[Criterion, ...]:

@@ -50,104 +50,89 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
-        a2 = k.a2
-        a3 = k.a3
-        d1 = k.d1
-        d4 = k.d4
-        d5 = k.d5
-        d6 = k.d6
-        machine_scale = k.machine_scale
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
+        a2, a3, d1, d4, d5, d6, machine_scale = k.a2, k.a3, k.d1, k.d4, k.d5, k.d6, k.machine_scale
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6 = k.offset_a5, k.offset_a6
         status = passed(axes)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9) & (absolute(axis_a5) <= 1e9) & (absolute(axis_a6) <= 1e9)
-            ),
+            (absolute(axis_a1) <= 1e9)
+            & (absolute(axis_a2) <= 1e9)
+            & (absolute(axis_a3) <= 1e9)
+            & (absolute(axis_a4) <= 1e9)
+            & (absolute(axis_a5) <= 1e9)
+            & (absolute(axis_a6) <= 1e9),
             Status.BAD_INPUT,
         )
-        q5 = DEGREE*(axis_a5 - offset_a5)
+        q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
-        q4 = DEGREE*(axis_a4 - offset_a4)
-        q2 = DEGREE*(axis_a2 - offset_a2)
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        q4 = DEGREE * (axis_a4 - offset_a4)
+        q2 = DEGREE * (axis_a2 - offset_a2)
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         q2_plus_q3_plus_q4 = q2_plus_q3 + q4
         cos_q234 = cos(q2_plus_q3_plus_q4)
-        r11_at_q234 = cos_q1*cos_q234
+        r11_at_q234 = cos_q1 * cos_q234
         cos_q5 = cos(q5)
-        r12_at_q5 = cos_q5*sin_q1 - r11_at_q234*sin_q5
+        r12_at_q5 = cos_q5 * sin_q1 - r11_at_q234 * sin_q5
         sin_q234 = sin(q2_plus_q3_plus_q4)
-        r12_at_q234 = -cos_q1*sin_q234
+        r12_at_q234 = -cos_q1 * sin_q234
         cos_q2 = cos(q2)
-        r11_at_q2 = cos_q1*cos_q2
-        x_at_q3 = a2*r11_at_q2
+        r11_at_q2 = cos_q1 * cos_q2
+        x_at_q3 = a2 * r11_at_q2
         cos_q23 = cos(q2_plus_q3)
-        r11_at_q23 = cos_q1*cos_q23
-        x_at_q4 = x_at_q3 + a3*r11_at_q23
-        x_at_q5 = x_at_q4 + d4*sin_q1
-        x_at_q6 = x_at_q5 - d5*r12_at_q234
-        d6_times_r12_at_q5 = d6*r12_at_q5
+        r11_at_q23 = cos_q1 * cos_q23
+        x_at_q4 = x_at_q3 + a3 * r11_at_q23
+        x_at_q5 = x_at_q4 + d4 * sin_q1
+        x_at_q6 = x_at_q5 - d5 * r12_at_q234
+        d6_times_r12_at_q5 = d6 * r12_at_q5
         x = d6_times_r12_at_q5 + x_at_q6
-        r21_at_q234 = cos_q234*sin_q1
-        r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5
-        r22_at_q234 = -sin_q1*sin_q234
-        r21_at_q2 = cos_q2*sin_q1
-        y_at_q3 = a2*r21_at_q2
-        r21_at_q23 = cos_q23*sin_q1
-        y_at_q4 = y_at_q3 + a3*r21_at_q23
-        y_at_q5 = y_at_q4 - d4*cos_q1
-        y_at_q6 = y_at_q5 - d5*r22_at_q234
-        d6_times_r22_at_q5 = -d6*r22_at_q5
+        r21_at_q234 = cos_q234 * sin_q1
+        r22_at_q5 = -cos_q1 * cos_q5 - r21_at_q234 * sin_q5
+        r22_at_q234 = -sin_q1 * sin_q234
+        r21_at_q2 = cos_q2 * sin_q1
+        y_at_q3 = a2 * r21_at_q2
+        r21_at_q23 = cos_q23 * sin_q1
+        y_at_q4 = y_at_q3 + a3 * r21_at_q23
+        y_at_q5 = y_at_q4 - d4 * cos_q1
+        y_at_q6 = y_at_q5 - d5 * r22_at_q234
+        d6_times_r22_at_q5 = -d6 * r22_at_q5
         y = y_at_q6 - d6_times_r22_at_q5
-        r32_at_q5 = -sin_q234*sin_q5
+        r32_at_q5 = -sin_q234 * sin_q5
         sin_q2 = sin(q2)
-        z_at_q3 = d1 + a2*sin_q2
+        z_at_q3 = d1 + a2 * sin_q2
         sin_q23 = sin(q2_plus_q3)
-        z_at_q4 = z_at_q3 + a3*sin_q23
-        z_at_q6 = z_at_q4 - d5*cos_q234
-        z = z_at_q6 + d6*r32_at_q5
-        r11_at_q5 = r11_at_q234*cos_q5 + sin_q1*sin_q5
-        q6 = DEGREE*(axis_a6 - offset_a6)
+        z_at_q4 = z_at_q3 + a3 * sin_q23
+        z_at_q6 = z_at_q4 - d5 * cos_q234
+        z = z_at_q6 + d6 * r32_at_q5
+        r11_at_q5 = r11_at_q234 * cos_q5 + sin_q1 * sin_q5
+        q6 = DEGREE * (axis_a6 - offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q234*sin_q6
-        r12_at_q6 = r12_at_q234*cos_q6 - r11_at_q5*sin_q6
-        r21_at_q5 = r21_at_q234*cos_q5 - cos_q1*sin_q5
-        r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q234*sin_q6
-        r22_at_q6 = r22_at_q234*cos_q6 - r21_at_q5*sin_q6
-        r31_at_q5 = cos_q5*sin_q234
-        r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6
-        r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6
+        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q234 * sin_q6
+        r12_at_q6 = r12_at_q234 * cos_q6 - r11_at_q5 * sin_q6
+        r21_at_q5 = r21_at_q234 * cos_q5 - cos_q1 * sin_q5
+        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q234 * sin_q6
+        r22_at_q6 = r22_at_q234 * cos_q6 - r21_at_q5 * sin_q6
+        r31_at_q5 = cos_q5 * sin_q234
+        r31_at_q6 = cos_q234 * sin_q6 + r31_at_q5 * cos_q6
+        r32_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
         wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
         wrist_y = d6_times_r22_at_q5 + y
-        branch_shoulder = (-wrist_x*cos_q1 - wrist_y*sin_q1)/machine_scale
+        branch_shoulder = (-wrist_x * cos_q1 - wrist_y * sin_q1) / machine_scale
         sin_q3 = sin(q3)
         return (
-            (
-                (x, y, z),
-                (
-                    (r11_at_q6, r12_at_q6, r12_at_q5),
-                    (r21_at_q6, r22_at_q6, r22_at_q5),
-                    (r31_at_q6, r32_at_q6, r32_at_q5),
-                ),
-                (branch_shoulder, sin_q3, sin_q5),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_q6, r12_at_q6, r12_at_q5), (r21_at_q6, r22_at_q6, r22_at_q5), (r31_at_q6, r32_at_q6, r32_at_q5)),
+            (branch_shoulder, sin_q3, sin_q5),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -156,109 +141,108 @@ class ArrayPrograms(Programs):
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self.constants
-        a2 = k.a2
-        a2_minus_a3 = k.a2_minus_a3
-        a2_plus_a3 = k.a2_plus_a3
-        a2_squared_plus_a3_squared = k.a2_squared_plus_a3_squared
-        a3 = k.a3
-        d1 = k.d1
-        d1_times_d5_times_2 = k.d1_times_d5_times_2
-        d4 = k.d4
-        d5 = k.d5
-        d6 = k.d6
+        a2, a2_minus_a3, a2_plus_a3 = k.a2, k.a2_minus_a3, k.a2_plus_a3
+        a2_squared_plus_a3_squared, a3, d1 = k.a2_squared_plus_a3_squared, k.a3, k.d1
+        d1_times_d5_times_2, d4, d5, d6 = k.d1_times_d5_times_2, k.d4, k.d5, k.d6
         machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        mid_a4 = k.mid_a4
-        mid_a5 = k.mid_a5
-        mid_a6 = k.mid_a6
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        part_of_cos_q6 = k.part_of_cos_q6
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        offset_a6, part_of_cos_q6 = k.offset_a6, k.part_of_cos_q6
         part_of_divisor_q6_q1_for_q3 = k.part_of_divisor_q6_q1_for_q3
-        part_of_highest_q6_q1_for_q3 = k.part_of_highest_q6_q1_for_q3
-        rounding_q1 = k.rounding_q1
-        scale_q3_squared_times_rounding = k.scale_q3_squared_times_rounding
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        single_a4 = k.single_a4
-        single_a5 = k.single_a5
-        single_a6 = k.single_a6
-        size_q1_for_q3 = k.size_q1_for_q3
-        size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
-        twice_d5 = k.twice_d5
+        part_of_highest_q6_q1_for_q3, rounding_q1 = k.part_of_highest_q6_q1_for_q3, k.rounding_q1
+        scale_q3_squared_times_rounding, single_a1 = k.scale_q3_squared_times_rounding, k.single_a1
+        single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
+        single_a6, size_q1_for_q3 = k.single_a6, k.size_q1_for_q3
+        size_q1_for_q3_times_rounding, twice_d5 = k.size_q1_for_q3_times_rounding, k.twice_d5
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(ref_a4) <= 1e9)
+            & (absolute(ref_a5) <= 1e9)
+            & (absolute(ref_a6) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        wrist_x = x - d6*r13  # the point that the last joints turn about
-        wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        distance_q1_squared = distance_q1*distance_q1
+        wrist_x = x - d6 * r13  # the point that the last joints turn about
+        wrist_y = y - d6 * r23
+        distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # q1: of the point from its axis
+        ahead_squared_q1 = (distance_q1 - d4) * (d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1 * distance_q1
         # q1: out of reach
-        require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
+        require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1, Status.UNREACHABLE)
         # how far ahead of the axis the point is; negative: behind
-        ahead_q1_before_q1_for_q3 = -root(ahead_squared_q1)*sigma_shoulder
+        ahead_q1_before_q1_for_q3 = -root(ahead_squared_q1) * sigma_shoulder
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)  # its reference where it is free
             sin_q1_before_q1_for_q3 = sin(free_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
         # its reference where it is free
-        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/distance_q1_squared
-        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/distance_q1_squared
+        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / distance_q1_squared
+        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d4 * wrist_x) / distance_q1_squared
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
             elsewhere_cos_q1_before_q1_for_q3,
             (ref_a1,),
         )
-        wrist_z = z - d6*r33
+        wrist_z = z - d6 * r33
         wrist_y_from_q1_fixed = wrist_z - d1
 
         def elsewhere_ahead_q1(
-            ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, distance_q1: Real, r11: Real, r12: Real,
-            r13: Real, r21: Real, r22: Real, r23: Real, r31: Real, r32: Real, r33: Real, ref_a6: Real,
-            sigma_wrist: Whole, sin_q1_before_q1_for_q3: Real, wrist_x: Real, wrist_y: Real,
-            wrist_y_from_q1_fixed: Real, wrist_z: Real,
+            ahead_q1_before_q1_for_q3: Real,
+            cos_q1_before_q1_for_q3: Real,
+            distance_q1: Real,
+            r11: Real,
+            r12: Real,
+            r13: Real,
+            r21: Real,
+            r22: Real,
+            r23: Real,
+            r31: Real,
+            r32: Real,
+            r33: Real,
+            ref_a6: Real,
+            sigma_wrist: Whole,
+            sin_q1_before_q1_for_q3: Real,
+            wrist_x: Real,
+            wrist_y: Real,
+            wrist_y_from_q1_fixed: Real,
+            wrist_z: Real,
         ) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            free_a6 = (ref_a6 - offset_a6) * DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
-            r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
-            r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
+            r21_from_q1_before_q1_for_q3 = r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3
+            r22_from_q1_before_q1_for_q3 = r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3
             radius_q6_before_q1_for_q3 = sqrt(
-                r21_from_q1_before_q1_for_q3*r21_from_q1_before_q1_for_q3
-                + r22_from_q1_before_q1_for_q3*r22_from_q1_before_q1_for_q3
+                r21_from_q1_before_q1_for_q3 * r21_from_q1_before_q1_for_q3
+                + r22_from_q1_before_q1_for_q3 * r22_from_q1_before_q1_for_q3
             )
-            q6_radius_of_q5_before_q1_for_q3 = sigma_wrist*radius_q6_before_q1_for_q3
-            cos_q5_before_q1_for_q3 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3
-            r21_from_q1_rate_q1_for_q3 = -r11*cos_q1_before_q1_for_q3 - r21*sin_q1_before_q1_for_q3
-            r22_from_q1_rate_q1_for_q3 = -r12*cos_q1_before_q1_for_q3 - r22*sin_q1_before_q1_for_q3
-            along_q6_rate_q1_for_q3 = -sigma_wrist*r21_from_q1_rate_q1_for_q3
-            across_q6_rate_q1_for_q3 = sigma_wrist*r22_from_q1_rate_q1_for_q3
+            q6_radius_of_q5_before_q1_for_q3 = sigma_wrist * radius_q6_before_q1_for_q3
+            cos_q5_before_q1_for_q3 = r13 * sin_q1_before_q1_for_q3 - r23 * cos_q1_before_q1_for_q3
+            r21_from_q1_rate_q1_for_q3 = -r11 * cos_q1_before_q1_for_q3 - r21 * sin_q1_before_q1_for_q3
+            r22_from_q1_rate_q1_for_q3 = -r12 * cos_q1_before_q1_for_q3 - r22 * sin_q1_before_q1_for_q3
+            along_q6_rate_q1_for_q3 = -sigma_wrist * r21_from_q1_rate_q1_for_q3
+            across_q6_rate_q1_for_q3 = sigma_wrist * r22_from_q1_rate_q1_for_q3
 
             def elsewhere_cos_q6_before_q1_for_q3(
-                cos_of_free_a6: Real, r21_from_q1_before_q1_for_q3: Real, r21_from_q1_rate_q1_for_q3: Real,
-                r22_from_q1_before_q1_for_q3: Real, r22_from_q1_rate_q1_for_q3: Real, radius_q6_before_q1_for_q3: Real,
+                cos_of_free_a6: Real,
+                r21_from_q1_before_q1_for_q3: Real,
+                r21_from_q1_rate_q1_for_q3: Real,
+                r22_from_q1_before_q1_for_q3: Real,
+                r22_from_q1_rate_q1_for_q3: Real,
+                radius_q6_before_q1_for_q3: Real,
                 sin_of_free_a6: Real,
             ) -> Reals:
                 cos_q6_before_q1_for_q3 = cos_of_free_a6
@@ -270,10 +254,10 @@ class ArrayPrograms(Programs):
 
                 radius_q6_rate_q1_for_q3 = (
                     -(
-                        -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                        - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                        -r21_from_q1_before_q1_for_q3 * r21_from_q1_rate_q1_for_q3
+                        - r22_from_q1_before_q1_for_q3 * r22_from_q1_rate_q1_for_q3
                     )
-                    /radius_q6_before_q1_for_q3
+                    / radius_q6_before_q1_for_q3
                 )
                 (radius_q6_rate_q1_for_q3,) = elsewhere(
                     radius_q6_before_q1_for_q3 > 0.0,
@@ -284,88 +268,121 @@ class ArrayPrograms(Programs):
                 cos_q6_rate_q1_for_q3 = 0.0
                 sin_q6_rate_q1_for_q3 = 0.0
                 return (
-                    cos_q6_before_q1_for_q3, sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3, cos_q6_rate_q1_for_q3,
+                    cos_q6_before_q1_for_q3,
+                    sin_q6_before_q1_for_q3,
+                    radius_q6_rate_q1_for_q3,
+                    cos_q6_rate_q1_for_q3,
                     sin_q6_rate_q1_for_q3,
                 )
 
-            along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
-            one_by_radius_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
-            part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
+            along_q6_before_q1_for_q3 = -sigma_wrist * r21_from_q1_before_q1_for_q3
+            one_by_radius_q6_before_q1_for_q3 = 1.0 / radius_q6_before_q1_for_q3
+            part_of_cos_q6_before_q1_for_q3 = -along_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
             cos_q6_before_q1_for_q3 = -part_of_cos_q6_before_q1_for_q3
-            across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
-            part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
+            across_q6_before_q1_for_q3 = sigma_wrist * r22_from_q1_before_q1_for_q3
+            part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
             sin_q6_before_q1_for_q3 = part_of_sin_q6_before_q1_for_q3
             radius_q6_rate_q1_for_q3 = (
                 -(
-                    -r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                    - r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                    -r21_from_q1_before_q1_for_q3 * r21_from_q1_rate_q1_for_q3
+                    - r22_from_q1_before_q1_for_q3 * r22_from_q1_rate_q1_for_q3
                 )
-                /radius_q6_before_q1_for_q3
+                / radius_q6_before_q1_for_q3
             )
             cos_q6_rate_q1_for_q3 = (
-                (along_q6_rate_q1_for_q3 + part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
-                *one_by_radius_q6_before_q1_for_q3
-            )
+                along_q6_rate_q1_for_q3 + part_of_cos_q6_before_q1_for_q3 * radius_q6_rate_q1_for_q3
+            ) * one_by_radius_q6_before_q1_for_q3
             sin_q6_rate_q1_for_q3 = (
-                (across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
-                *one_by_radius_q6_before_q1_for_q3
-            )
-            found = elsewhere(
+                across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3 * radius_q6_rate_q1_for_q3
+            ) * one_by_radius_q6_before_q1_for_q3
+            (
+                cos_q6_before_q1_for_q3,
+                sin_q6_before_q1_for_q3,
+                radius_q6_rate_q1_for_q3,
+                cos_q6_rate_q1_for_q3,
+                sin_q6_rate_q1_for_q3,
+            ) = elsewhere(
                 radius_q6_before_q1_for_q3 > 1e-11,
                 (
-                    cos_q6_before_q1_for_q3, sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3, cos_q6_rate_q1_for_q3,
+                    cos_q6_before_q1_for_q3,
+                    sin_q6_before_q1_for_q3,
+                    radius_q6_rate_q1_for_q3,
+                    cos_q6_rate_q1_for_q3,
                     sin_q6_rate_q1_for_q3,
                 ),
                 elsewhere_cos_q6_before_q1_for_q3,
                 (
-                    cos_of_free_a6, r21_from_q1_before_q1_for_q3, r21_from_q1_rate_q1_for_q3,
-                    r22_from_q1_before_q1_for_q3, r22_from_q1_rate_q1_for_q3, radius_q6_before_q1_for_q3, sin_of_free_a6,
+                    cos_of_free_a6,
+                    r21_from_q1_before_q1_for_q3,
+                    r21_from_q1_rate_q1_for_q3,
+                    r22_from_q1_before_q1_for_q3,
+                    r22_from_q1_rate_q1_for_q3,
+                    radius_q6_before_q1_for_q3,
+                    sin_of_free_a6,
                 ),
             )
-            (
-                cos_q6_before_q1_for_q3, sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3, cos_q6_rate_q1_for_q3,
-                sin_q6_rate_q1_for_q3,
-            ) = found
-            r21_from_q1_before_q6_before_q1_for_q3 = r31*cos_q6_before_q1_for_q3 - r32*sin_q6_before_q1_for_q3
+            r21_from_q1_before_q6_before_q1_for_q3 = r31 * cos_q6_before_q1_for_q3 - r32 * sin_q6_before_q1_for_q3
             r21_from_q1_before_q56_before_q1_for_q3 = (
-                r21_from_q1_before_q6_before_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_before_q1_for_q3*r33
+                r21_from_q1_before_q6_before_q1_for_q3 * cos_q5_before_q1_for_q3
+                - q6_radius_of_q5_before_q1_for_q3 * r33
             )
-            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q1_for_q3
-            r22_from_q1_before_q6_before_q1_for_q3 = r32*cos_q6_before_q1_for_q3 + r31*sin_q6_before_q1_for_q3
-            wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3
+            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q1_for_q3
+            r22_from_q1_before_q6_before_q1_for_q3 = r32 * cos_q6_before_q1_for_q3 + r31 * sin_q6_before_q1_for_q3
+            wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q1_for_q3
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3 = (
-                wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
-                + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - a2_squared_plus_a3_squared
+                wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
+                + wrist_y_from_q1_before_q1_for_q3 * wrist_y_from_q1_before_q1_for_q3
+                - a2_squared_plus_a3_squared
             )
 
             def elsewhere_ahead_q1(
-                across_q6_rate_q1_for_q3: Real, ahead_q1_before_q1_for_q3: Real, along_q6_rate_q1_for_q3: Real,
-                cos_q1_before_q1_for_q3: Real, cos_q5_before_q1_for_q3: Real, cos_q6_before_q1_for_q3: Real,
-                cos_q6_rate_q1_for_q3: Real, distance_q1: Real, r11: Real, r12: Real, r13: Real, r21: Real,
-                r21_from_q1_before_q6_before_q1_for_q3: Real, r22: Real, r23: Real, r31: Real, r32: Real, r33: Real,
-                radius_q6_before_q1_for_q3: Real, radius_q6_rate_q1_for_q3: Real, sigma_wrist: Whole,
-                sin_q1_before_q1_for_q3: Real, sin_q6_before_q1_for_q3: Real, sin_q6_rate_q1_for_q3: Real,
-                value_q1_for_q3: Real, wrist_x: Real, wrist_x_from_q1_before_q1_for_q3: Real, wrist_y: Real,
-                wrist_y_from_q1_before_q1_for_q3: Real, wrist_z: Real,
+                across_q6_rate_q1_for_q3: Real,
+                ahead_q1_before_q1_for_q3: Real,
+                along_q6_rate_q1_for_q3: Real,
+                cos_q1_before_q1_for_q3: Real,
+                cos_q5_before_q1_for_q3: Real,
+                cos_q6_before_q1_for_q3: Real,
+                cos_q6_rate_q1_for_q3: Real,
+                distance_q1: Real,
+                r11: Real,
+                r12: Real,
+                r13: Real,
+                r21: Real,
+                r21_from_q1_before_q6_before_q1_for_q3: Real,
+                r22: Real,
+                r23: Real,
+                r31: Real,
+                r32: Real,
+                r33: Real,
+                radius_q6_before_q1_for_q3: Real,
+                radius_q6_rate_q1_for_q3: Real,
+                sigma_wrist: Whole,
+                sin_q1_before_q1_for_q3: Real,
+                sin_q6_before_q1_for_q3: Real,
+                sin_q6_rate_q1_for_q3: Real,
+                value_q1_for_q3: Real,
+                wrist_x: Real,
+                wrist_x_from_q1_before_q1_for_q3: Real,
+                wrist_y: Real,
+                wrist_y_from_q1_before_q1_for_q3: Real,
+                wrist_z: Real,
             ) -> Reals:
-                r23_from_q1_rate_q1_for_q3 = -r13*cos_q1_before_q1_for_q3 - r23*sin_q1_before_q1_for_q3
-                q6_radius_of_q5_rate_q1_for_q3 = sigma_wrist*radius_q6_rate_q1_for_q3
-                r21_from_q1_before_q6_rate_q1_for_q3 = r31*cos_q6_rate_q1_for_q3 - r32*sin_q6_rate_q1_for_q3
+                r23_from_q1_rate_q1_for_q3 = -r13 * cos_q1_before_q1_for_q3 - r23 * sin_q1_before_q1_for_q3
+                q6_radius_of_q5_rate_q1_for_q3 = sigma_wrist * radius_q6_rate_q1_for_q3
+                r21_from_q1_before_q6_rate_q1_for_q3 = r31 * cos_q6_rate_q1_for_q3 - r32 * sin_q6_rate_q1_for_q3
                 r21_from_q1_before_q56_rate_q1_for_q3 = (
-                    r21_from_q1_before_q6_rate_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_rate_q1_for_q3*r33
-                    - r21_from_q1_before_q6_before_q1_for_q3*r23_from_q1_rate_q1_for_q3
+                    r21_from_q1_before_q6_rate_q1_for_q3 * cos_q5_before_q1_for_q3
+                    - q6_radius_of_q5_rate_q1_for_q3 * r33
+                    - r21_from_q1_before_q6_before_q1_for_q3 * r23_from_q1_rate_q1_for_q3
                 )
-                wrist_x_from_q1_rate_q1_for_q3 = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3
-                r22_from_q1_before_q6_rate_q1_for_q3 = r32*cos_q6_rate_q1_for_q3 + r31*sin_q6_rate_q1_for_q3
-                wrist_y_from_q1_rate_q1_for_q3 = d5*r22_from_q1_before_q6_rate_q1_for_q3
+                wrist_x_from_q1_rate_q1_for_q3 = -d4 - d5 * r21_from_q1_before_q56_rate_q1_for_q3
+                r22_from_q1_before_q6_rate_q1_for_q3 = r32 * cos_q6_rate_q1_for_q3 + r31 * sin_q6_rate_q1_for_q3
+                wrist_y_from_q1_rate_q1_for_q3 = d5 * r22_from_q1_before_q6_rate_q1_for_q3
                 # how it changes with q1
-                rate_q1_for_q3 = (
-                    2.0
-                    *(
-                        wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
-                        + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
-                    )
+                rate_q1_for_q3 = 2.0 * (
+                    wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_rate_q1_for_q3
+                    + wrist_y_from_q1_before_q1_for_q3 * wrist_y_from_q1_rate_q1_for_q3
                 )
 
                 def elsewhere_turn_q1_for_q3() -> Reals:
@@ -373,51 +390,63 @@ class ArrayPrograms(Programs):
                     return (turn_q1_for_q3,)
 
                 excess_q1_for_q3 = select(
-                    value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3,
+                    value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3
                 )
-                turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
+                turn_q1_for_q3 = -excess_q1_for_q3 / rate_q1_for_q3  # to the boundary of the later step
                 (turn_q1_for_q3,) = elsewhere(
                     absolute(rate_q1_for_q3) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3,),
                     elsewhere_turn_q1_for_q3,
                     (),
                 )
-                turn_q1_for_q3_squared = turn_q1_for_q3*turn_q1_for_q3
+                turn_q1_for_q3_squared = turn_q1_for_q3 * turn_q1_for_q3
                 # whether it follows q6
-                follows_q1_for_q3 = (
-                    (turn_q1_for_q3_squared > 1e-12)
-                    | (
-                        (across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3 + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3)
-                        *turn_q1_for_q3_squared > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                follows_q1_for_q3 = (turn_q1_for_q3_squared > 1e-12) | (
+                    (
+                        across_q6_rate_q1_for_q3 * across_q6_rate_q1_for_q3
+                        + along_q6_rate_q1_for_q3 * along_q6_rate_q1_for_q3
                     )
+                    * turn_q1_for_q3_squared
+                    > 1e-12 * radius_q6_before_q1_for_q3 * radius_q6_before_q1_for_q3
                 )
 
                 def elsewhere_best_cost_q1_for_q3(
-                    ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real,
-                    turn_q1_for_q3: Real, turn_q1_for_q3_squared: Real, wrist_x: Real, wrist_y: Real,
+                    ahead_q1_before_q1_for_q3: Real,
+                    cos_q1_before_q1_for_q3: Real,
+                    sin_q1_before_q1_for_q3: Real,
+                    turn_q1_for_q3: Real,
+                    turn_q1_for_q3_squared: Real,
+                    wrist_x: Real,
+                    wrist_y: Real,
                 ) -> Reals:
                     turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3_squared)
-                    one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-                    turned_cos_q1_for_q3 = (
-                        one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
+                    one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
+                    turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                        cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
                     )
-                    turned_sin_q1_for_q3 = (
-                        one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
+                    turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                        sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
                     )
                     # what is left of its own equation
-                    turned_cost_q1_for_q3 = absolute(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
+                    turned_cost_q1_for_q3 = absolute(
+                        d4 + turned_cos_q1_for_q3 * wrist_y - turned_sin_q1_for_q3 * wrist_x
+                    )
                     best_cost_q1_for_q3 = turned_cost_q1_for_q3
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
+                    turned_ahead_q1_for_q3 = (
+                        ahead_q1_before_q1_for_q3 - d4 * turn_q1_for_q3
+                    ) * one_by_turned_length_q1_for_q3
                     best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
                     best_cos_q1_for_q3 = turned_cos_q1_for_q3
                     best_sin_q1_for_q3 = turned_sin_q1_for_q3
                     return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
 
-                part_of_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5*wrist_z
-                part_of_across_q6_q1_for_q3_2 = ahead_q1_before_q1_for_q3*twice_d5*cos_q5_before_q1_for_q3
-                along_q6_q1_for_q3 = -part_of_across_q6_q1_for_q3*r32 - part_of_across_q6_q1_for_q3_2*r31
-                across_q6_q1_for_q3 = part_of_across_q6_q1_for_q3_2*r32 - part_of_across_q6_q1_for_q3*r31
-                swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3 + along_q6_q1_for_q3*along_q6_q1_for_q3)
+                part_of_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5 * wrist_z
+                part_of_across_q6_q1_for_q3_2 = ahead_q1_before_q1_for_q3 * twice_d5 * cos_q5_before_q1_for_q3
+                along_q6_q1_for_q3 = -part_of_across_q6_q1_for_q3 * r32 - part_of_across_q6_q1_for_q3_2 * r31
+                across_q6_q1_for_q3 = part_of_across_q6_q1_for_q3_2 * r32 - part_of_across_q6_q1_for_q3 * r31
+                swing_q6_q1_for_q3 = sqrt(
+                    across_q6_q1_for_q3 * across_q6_q1_for_q3 + along_q6_q1_for_q3 * along_q6_q1_for_q3
+                )
 
                 def elsewhere_highest_q6_q1_for_q3() -> Reals:
                     highest_q6_q1_for_q3 = 1.0  # the arc: cosines from its centre
@@ -425,16 +454,20 @@ class ArrayPrograms(Programs):
                     return (highest_q6_q1_for_q3, lowest_q6_q1_for_q3)
 
                 level_q6_q1_for_q3 = (
-                    value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3 - along_q6_q1_for_q3*cos_q6_before_q1_for_q3
+                    value_q1_for_q3
+                    - across_q6_q1_for_q3 * sin_q6_before_q1_for_q3
+                    - along_q6_q1_for_q3 * cos_q6_before_q1_for_q3
                 )
-                part_of_highest_q6_q1_for_q3_2 = (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3
+                part_of_highest_q6_q1_for_q3_2 = (
+                    part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3
+                ) / swing_q6_q1_for_q3
                 # the arc: cosines from its centre
                 highest_q6_q1_for_q3 = select(
                     part_of_highest_q6_q1_for_q3_2 > 1.0,
                     1.0,
                     select(part_of_highest_q6_q1_for_q3_2 < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2),
                 )
-                part_of_lowest_q6_q1_for_q3 = (level_q6_q1_for_q3 + part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3
+                part_of_lowest_q6_q1_for_q3 = (level_q6_q1_for_q3 + part_of_highest_q6_q1_for_q3) / swing_q6_q1_for_q3
                 lowest_q6_q1_for_q3 = select(
                     -part_of_lowest_q6_q1_for_q3 > 1.0,
                     1.0,
@@ -447,26 +480,28 @@ class ArrayPrograms(Programs):
                     (),
                 )
                 near_q6_q1_for_q3 = atan2(
-                    root((1.0 - highest_q6_q1_for_q3)*(1.0 + highest_q6_q1_for_q3)),
-                    highest_q6_q1_for_q3,
+                    root((1.0 - highest_q6_q1_for_q3) * (1.0 + highest_q6_q1_for_q3)), highest_q6_q1_for_q3
                 )
-                far_q6_q1_for_q3 = atan2(root((1.0 - lowest_q6_q1_for_q3)*(1.0 + lowest_q6_q1_for_q3)), lowest_q6_q1_for_q3)
+                far_q6_q1_for_q3 = atan2(
+                    root((1.0 - lowest_q6_q1_for_q3) * (1.0 + lowest_q6_q1_for_q3)), lowest_q6_q1_for_q3
+                )
                 centre_q6_q1_for_q3 = atan2(across_q6_q1_for_q3, along_q6_q1_for_q3)
                 angle_q6_q1_for_q3 = atan2(sin_q6_before_q1_for_q3, cos_q6_before_q1_for_q3)
                 side_q6_q1_for_q3 = select(
-                    along_q6_q1_for_q3*sin_q6_before_q1_for_q3 - across_q6_q1_for_q3*cos_q6_before_q1_for_q3 >= 0.0, 1.0,
+                    along_q6_q1_for_q3 * sin_q6_before_q1_for_q3 - across_q6_q1_for_q3 * cos_q6_before_q1_for_q3 >= 0.0,
+                    1.0,
                     -1.0,
                 )
                 moved_q6_q1_for_q3 = nearest_on_arc(
                     angle_q6_q1_for_q3,
-                    centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
-                    0.5*(far_q6_q1_for_q3 - near_q6_q1_for_q3),
+                    centre_q6_q1_for_q3 + 0.5 * (far_q6_q1_for_q3 + near_q6_q1_for_q3) * side_q6_q1_for_q3,
+                    0.5 * (far_q6_q1_for_q3 - near_q6_q1_for_q3),
                 )
                 near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
                 near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
-                near_q_q1_for_q3 = sigma_wrist*(near_cos_q6_q1_for_q3*r12 + near_sin_q6_q1_for_q3*r11)
-                near_p_q1_for_q3 = (-near_cos_q6_q1_for_q3*r22 - near_sin_q6_q1_for_q3*r21)*sigma_wrist
-                near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
+                near_q_q1_for_q3 = sigma_wrist * (near_cos_q6_q1_for_q3 * r12 + near_sin_q6_q1_for_q3 * r11)
+                near_p_q1_for_q3 = (-near_cos_q6_q1_for_q3 * r22 - near_sin_q6_q1_for_q3 * r21) * sigma_wrist
+                near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3 * near_p_q1_for_q3 + near_q_q1_for_q3 * near_q_q1_for_q3)
 
                 def elsewhere_near_cos_q1_for_q3(cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real) -> Reals:
                     near_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows
@@ -474,18 +509,20 @@ class ArrayPrograms(Programs):
                     return (near_cos_q1_for_q3, near_sin_q1_for_q3)
 
                 near_along_q1_for_q3 = (
-                    sigma_wrist*(near_cos_q6_q1_for_q3*r21 - near_sin_q6_q1_for_q3*r22)*near_q_q1_for_q3
-                    - (near_sin_q6_q1_for_q3*r12 - near_cos_q6_q1_for_q3*r11)*sigma_wrist*near_p_q1_for_q3
+                    sigma_wrist * (near_cos_q6_q1_for_q3 * r21 - near_sin_q6_q1_for_q3 * r22) * near_q_q1_for_q3
+                    - (near_sin_q6_q1_for_q3 * r12 - near_cos_q6_q1_for_q3 * r11) * sigma_wrist * near_p_q1_for_q3
                 )
                 # of two opposite ways
                 near_towards_q1_for_q3 = select(
-                    absolute(near_along_q1_for_q3) <= 5e-12*near_radius_q1_for_q3,
-                    near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3, near_along_q1_for_q3,
+                    absolute(near_along_q1_for_q3) <= 5e-12 * near_radius_q1_for_q3,
+                    near_p_q1_for_q3 * sin_q1_before_q1_for_q3 - near_q_q1_for_q3 * cos_q1_before_q1_for_q3,
+                    near_along_q1_for_q3,
                 )
                 near_side_q1_for_q3 = select(near_towards_q1_for_q3 < 0.0, -1.0, 1.0)
-                part_of_near_cos_q1_for_q3 = near_side_q1_for_q3/near_radius_q1_for_q3
-                near_cos_q1_for_q3 = -near_q_q1_for_q3*part_of_near_cos_q1_for_q3  # the earlier angle follows
-                near_sin_q1_for_q3 = near_p_q1_for_q3*part_of_near_cos_q1_for_q3  # it stays where every angle gives this one
+                part_of_near_cos_q1_for_q3 = near_side_q1_for_q3 / near_radius_q1_for_q3
+                near_cos_q1_for_q3 = -near_q_q1_for_q3 * part_of_near_cos_q1_for_q3  # the earlier angle follows
+                # it stays where every angle gives this one
+                near_sin_q1_for_q3 = near_p_q1_for_q3 * part_of_near_cos_q1_for_q3
                 near_cos_q1_for_q3, near_sin_q1_for_q3 = elsewhere(
                     near_radius_q1_for_q3 > 1e-12,
                     (near_cos_q1_for_q3, near_sin_q1_for_q3),
@@ -499,46 +536,58 @@ class ArrayPrograms(Programs):
                     swept_sin_q1_for_q3 = near_sin_q1_for_q3
                     return (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3)
 
-                near_cost_q1_for_q3 = absolute(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
-                mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
+                near_cost_q1_for_q3 = absolute(d4 + near_cos_q1_for_q3 * wrist_y - near_sin_q1_for_q3 * wrist_x)
+                mirrored_q6_q1_for_q3 = 2.0 * centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
                 mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
                 mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
-                mirrored_q_q1_for_q3 = sigma_wrist*(mirrored_cos_q6_q1_for_q3*r12 + mirrored_sin_q6_q1_for_q3*r11)
-                mirrored_p_q1_for_q3 = (-mirrored_cos_q6_q1_for_q3*r22 - mirrored_sin_q6_q1_for_q3*r21)*sigma_wrist
+                mirrored_q_q1_for_q3 = sigma_wrist * (mirrored_cos_q6_q1_for_q3 * r12 + mirrored_sin_q6_q1_for_q3 * r11)
+                mirrored_p_q1_for_q3 = (
+                    -mirrored_cos_q6_q1_for_q3 * r22 - mirrored_sin_q6_q1_for_q3 * r21
+                ) * sigma_wrist
                 mirrored_radius_q1_for_q3 = sqrt(
-                    mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
+                    mirrored_p_q1_for_q3 * mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3 * mirrored_q_q1_for_q3
                 )
 
-                def elsewhere_mirrored_cos_q1_for_q3(cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real) -> Reals:
+                def elsewhere_mirrored_cos_q1_for_q3(
+                    cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real
+                ) -> Reals:
                     mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows
                     mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3  # it stays where every angle gives this one
                     return (mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3)
 
                 mirrored_along_q1_for_q3 = (
-                    sigma_wrist*(mirrored_cos_q6_q1_for_q3*r21 - mirrored_sin_q6_q1_for_q3*r22)*mirrored_q_q1_for_q3
-                    - (mirrored_sin_q6_q1_for_q3*r12 - mirrored_cos_q6_q1_for_q3*r11)*sigma_wrist*mirrored_p_q1_for_q3
+                    sigma_wrist
+                    * (mirrored_cos_q6_q1_for_q3 * r21 - mirrored_sin_q6_q1_for_q3 * r22)
+                    * mirrored_q_q1_for_q3
+                    - (mirrored_sin_q6_q1_for_q3 * r12 - mirrored_cos_q6_q1_for_q3 * r11)
+                    * sigma_wrist
+                    * mirrored_p_q1_for_q3
                 )
                 # of two opposite ways
                 mirrored_towards_q1_for_q3 = select(
-                    absolute(mirrored_along_q1_for_q3) <= 5e-12*mirrored_radius_q1_for_q3,
-                    mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3,
+                    absolute(mirrored_along_q1_for_q3) <= 5e-12 * mirrored_radius_q1_for_q3,
+                    mirrored_p_q1_for_q3 * sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3 * cos_q1_before_q1_for_q3,
                     mirrored_along_q1_for_q3,
                 )
                 mirrored_side_q1_for_q3 = select(mirrored_towards_q1_for_q3 < 0.0, -1.0, 1.0)
-                part_of_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
-                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*part_of_mirrored_cos_q1_for_q3  # the earlier angle follows
+                part_of_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3 / mirrored_radius_q1_for_q3
+                mirrored_cos_q1_for_q3 = (
+                    -mirrored_q_q1_for_q3 * part_of_mirrored_cos_q1_for_q3
+                )  # the earlier angle follows
                 # it stays where every angle gives this one
-                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*part_of_mirrored_cos_q1_for_q3
+                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3 * part_of_mirrored_cos_q1_for_q3
                 mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3 = elsewhere(
                     mirrored_radius_q1_for_q3 > 1e-12,
                     (mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3),
                     elsewhere_mirrored_cos_q1_for_q3,
                     (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
                 )
-                mirrored_cost_q1_for_q3 = absolute(d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
+                mirrored_cost_q1_for_q3 = absolute(
+                    d4 + mirrored_cos_q1_for_q3 * wrist_y - mirrored_sin_q1_for_q3 * wrist_x
+                )
 
                 def elsewhere_swept_cost_q1_for_q3(
-                    mirrored_cos_q1_for_q3: Real, mirrored_cost_q1_for_q3: Real, mirrored_sin_q1_for_q3: Real,
+                    mirrored_cos_q1_for_q3: Real, mirrored_cost_q1_for_q3: Real, mirrored_sin_q1_for_q3: Real
                 ) -> Reals:
                     swept_cost_q1_for_q3 = mirrored_cost_q1_for_q3
                     swept_cos_q1_for_q3 = mirrored_cos_q1_for_q3
@@ -561,7 +610,7 @@ class ArrayPrograms(Programs):
                     (near_cos_q1_for_q3, near_sin_q1_for_q3),
                 )
                 best_cost_q1_for_q3 = swept_cost_q1_for_q3
-                swept_ahead_q1_for_q3 = swept_cos_q1_for_q3*wrist_x + swept_sin_q1_for_q3*wrist_y
+                swept_ahead_q1_for_q3 = swept_cos_q1_for_q3 * wrist_x + swept_sin_q1_for_q3 * wrist_y
                 best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
                 best_cos_q1_for_q3 = swept_cos_q1_for_q3
                 best_sin_q1_for_q3 = swept_sin_q1_for_q3
@@ -570,13 +619,18 @@ class ArrayPrograms(Programs):
                     (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
                     elsewhere_best_cost_q1_for_q3,
                     (
-                        ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, turn_q1_for_q3,
-                        turn_q1_for_q3_squared, wrist_x, wrist_y,
+                        ahead_q1_before_q1_for_q3,
+                        cos_q1_before_q1_for_q3,
+                        sin_q1_before_q1_for_q3,
+                        turn_q1_for_q3,
+                        turn_q1_for_q3_squared,
+                        wrist_x,
+                        wrist_y,
                     ),
                 )
 
                 def elsewhere_ahead_q1(
-                    best_ahead_q1_for_q3: Real, best_cos_q1_for_q3: Real, best_sin_q1_for_q3: Real,
+                    best_ahead_q1_for_q3: Real, best_cos_q1_for_q3: Real, best_sin_q1_for_q3: Real
                 ) -> Reals:
                     ahead_q1 = best_ahead_q1_for_q3  # turned within rounding, where the rest can be reached
                     cos_q1 = best_cos_q1_for_q3  # turned within rounding, where the rest can be reached
@@ -602,12 +656,36 @@ class ArrayPrograms(Programs):
                 (ahead_q1, cos_q1, sin_q1),
                 elsewhere_ahead_q1,
                 (
-                    across_q6_rate_q1_for_q3, ahead_q1_before_q1_for_q3, along_q6_rate_q1_for_q3, cos_q1_before_q1_for_q3,
-                    cos_q5_before_q1_for_q3, cos_q6_before_q1_for_q3, cos_q6_rate_q1_for_q3, distance_q1, r11, r12, r13,
-                    r21, r21_from_q1_before_q6_before_q1_for_q3, r22, r23, r31, r32, r33, radius_q6_before_q1_for_q3,
-                    radius_q6_rate_q1_for_q3, sigma_wrist, sin_q1_before_q1_for_q3, sin_q6_before_q1_for_q3,
-                    sin_q6_rate_q1_for_q3, value_q1_for_q3, wrist_x, wrist_x_from_q1_before_q1_for_q3, wrist_y,
-                    wrist_y_from_q1_before_q1_for_q3, wrist_z,
+                    across_q6_rate_q1_for_q3,
+                    ahead_q1_before_q1_for_q3,
+                    along_q6_rate_q1_for_q3,
+                    cos_q1_before_q1_for_q3,
+                    cos_q5_before_q1_for_q3,
+                    cos_q6_before_q1_for_q3,
+                    cos_q6_rate_q1_for_q3,
+                    distance_q1,
+                    r11,
+                    r12,
+                    r13,
+                    r21,
+                    r21_from_q1_before_q6_before_q1_for_q3,
+                    r22,
+                    r23,
+                    r31,
+                    r32,
+                    r33,
+                    radius_q6_before_q1_for_q3,
+                    radius_q6_rate_q1_for_q3,
+                    sigma_wrist,
+                    sin_q1_before_q1_for_q3,
+                    sin_q6_before_q1_for_q3,
+                    sin_q6_rate_q1_for_q3,
+                    value_q1_for_q3,
+                    wrist_x,
+                    wrist_x_from_q1_before_q1_for_q3,
+                    wrist_y,
+                    wrist_y_from_q1_before_q1_for_q3,
+                    wrist_z,
                 ),
             )
             return (ahead_q1, cos_q1, sin_q1)
@@ -620,73 +698,106 @@ class ArrayPrograms(Programs):
             (ahead_q1, cos_q1, sin_q1),
             elsewhere_ahead_q1,
             (
-                ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, distance_q1, r11, r12, r13, r21, r22, r23, r31,
-                r32, r33, ref_a6, sigma_wrist, sin_q1_before_q1_for_q3, wrist_x, wrist_y, wrist_y_from_q1_fixed,
+                ahead_q1_before_q1_for_q3,
+                cos_q1_before_q1_for_q3,
+                distance_q1,
+                r11,
+                r12,
+                r13,
+                r21,
+                r22,
+                r23,
+                r31,
+                r32,
+                r33,
+                ref_a6,
+                sigma_wrist,
+                sin_q1_before_q1_for_q3,
+                wrist_x,
+                wrist_y,
+                wrist_y_from_q1_fixed,
                 wrist_z,
             ),
         )
-        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
-        r21_from_q1 = r21*cos_q1 - r11*sin_q1
-        r22_from_q1 = r22*cos_q1 - r12*sin_q1
-        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
-        q6_radius_of_q5 = sigma_wrist*radius_q6
-        q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33
+        cos_q5 = r13 * sin_q1 - r23 * cos_q1  # q5: linear pair in the q6 radius and r32 equations
+        r21_from_q1 = r21 * cos_q1 - r11 * sin_q1
+        r22_from_q1 = r22 * cos_q1 - r12 * sin_q1
+        # q6: direction and distance of a point
+        radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
+        q6_radius_of_q5 = sigma_wrist * radius_q6
+        q6_radius_of_q5_times_r33 = q6_radius_of_q5 * r33
 
         def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            free_a6 = (ref_a6 - offset_a6) * DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
             cos_q6_before_q6_of_q3 = cos_of_free_a6  # its reference where it is free
             sin_q6_before_q6_of_q3 = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3)
 
-        along_q6 = -sigma_wrist*r21_from_q1  # q6: polar angle in the r31 and r32 equations
-        cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
-        across_q6 = sigma_wrist*r22_from_q1
-        sin_q6_before_q6_of_q3 = across_q6/radius_q6
+        along_q6 = -sigma_wrist * r21_from_q1  # q6: polar angle in the r31 and r32 equations
+        cos_q6_before_q6_of_q3 = along_q6 / radius_q6  # its reference where it is free
+        across_q6 = sigma_wrist * r22_from_q1
+        sin_q6_before_q6_of_q3 = across_q6 / radius_q6
         cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
             radius_q6 > 1e-11,
             (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
             elsewhere_cos_q6_before_q6_of_q3,
             (ref_a6,),
         )
-        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
+        r21_from_q1_before_q6_before_q6_of_q3 = r31 * cos_q6_before_q6_of_q3 - r32 * sin_q6_before_q6_of_q3
         r21_from_q1_before_q56_before_q6_of_q3 = (
-            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5_times_r33
+            r21_from_q1_before_q6_before_q6_of_q3 * cos_q5 - q6_radius_of_q5_times_r33
         )
-        wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
-        r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
-        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3
+        wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - d5 * r21_from_q1_before_q56_before_q6_of_q3
+        r22_from_q1_before_q6_before_q6_of_q3 = r32 * cos_q6_before_q6_of_q3 + r31 * sin_q6_before_q6_of_q3
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
-            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+            wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
+            - a2_squared_plus_a3_squared
         )
         size_of_value_q6_of_q3 = absolute(value_q6_of_q3)
 
         def elsewhere_cos_q6(
-            ahead_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5_times_r33: Real, r31: Real,
-            r32: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, size_of_value_q6_of_q3: Real,
-            value_q6_of_q3: Real, wrist_y_from_q1_fixed: Real,
+            ahead_q1: Real,
+            cos_q5: Real,
+            cos_q6_before_q6_of_q3: Real,
+            q6_radius_of_q5_times_r33: Real,
+            r31: Real,
+            r32: Real,
+            radius_q6: Real,
+            sin_q6_before_q6_of_q3: Real,
+            size_of_value_q6_of_q3: Real,
+            value_q6_of_q3: Real,
+            wrist_y_from_q1_fixed: Real,
         ) -> Reals:
 
             def elsewhere_cos_q6(
-                ahead_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5_times_r33: Real, r31: Real,
-                r32: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real,
+                ahead_q1: Real,
+                cos_q5: Real,
+                cos_q6_before_q6_of_q3: Real,
+                q6_radius_of_q5_times_r33: Real,
+                r31: Real,
+                r32: Real,
+                radius_q6: Real,
+                sin_q6_before_q6_of_q3: Real,
+                value_q6_of_q3: Real,
                 wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed = ahead_q1 + d5*q6_radius_of_q5_times_r33
-                wrist_y_from_q1_across = d5*r31
-                wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
-                wrist_y_from_q1_along = d5*r32
-                along_q6_of_q3 = (
-                    -2.0*(-wrist_x_from_q1_along*wrist_x_from_q1_fixed - wrist_y_from_q1_along*wrist_y_from_q1_fixed)
+                wrist_x_from_q1_fixed = ahead_q1 + d5 * q6_radius_of_q5_times_r33
+                wrist_y_from_q1_across = d5 * r31
+                wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
+                wrist_y_from_q1_along = d5 * r32
+                along_q6_of_q3 = -2.0 * (
+                    -wrist_x_from_q1_along * wrist_x_from_q1_fixed - wrist_y_from_q1_along * wrist_y_from_q1_fixed
                 )
-                wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
-                across_q6_of_q3 = (
-                    2.0*(wrist_x_from_q1_across*wrist_x_from_q1_fixed + wrist_y_from_q1_across*wrist_y_from_q1_fixed)
+                wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
+                across_q6_of_q3 = 2.0 * (
+                    wrist_x_from_q1_across * wrist_x_from_q1_fixed + wrist_y_from_q1_across * wrist_y_from_q1_fixed
                 )
-                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+                swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
 
                 def elsewhere_highest_q6_of_q3() -> Reals:
                     highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
@@ -694,16 +805,16 @@ class ArrayPrograms(Programs):
                     return (highest_q6_of_q3, lowest_q6_of_q3)
 
                 level_q6_of_q3 = (
-                    value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
+                    value_q6_of_q3 - across_q6_of_q3 * sin_q6_before_q6_of_q3 - along_q6_of_q3 * cos_q6_before_q6_of_q3
                 )
-                part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
+                part_of_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                 # the arc: cosines from its centre
                 highest_q6_of_q3 = select(
                     part_of_highest_q6_of_q3 > 1.0,
                     1.0,
                     select(part_of_highest_q6_of_q3 < -1.0, -1.0, part_of_highest_q6_of_q3),
                 )
-                part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
+                part_of_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
                 lowest_q6_of_q3 = select(
                     -part_of_lowest_q6_of_q3 > 1.0,
                     1.0,
@@ -715,17 +826,17 @@ class ArrayPrograms(Programs):
                     elsewhere_highest_q6_of_q3,
                     (),
                 )
-                near_q6_of_q3 = atan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-                far_q6_of_q3 = atan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
+                near_q6_of_q3 = atan2(root((1.0 - highest_q6_of_q3) * (1.0 + highest_q6_of_q3)), highest_q6_of_q3)
+                far_q6_of_q3 = atan2(root((1.0 - lowest_q6_of_q3) * (1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
                 centre_q6_of_q3 = atan2(across_q6_of_q3, along_q6_of_q3)
                 angle_q6_of_q3 = atan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
                 side_q6_of_q3 = select(
-                    along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0, 1.0, -1.0,
+                    along_q6_of_q3 * sin_q6_before_q6_of_q3 - across_q6_of_q3 * cos_q6_before_q6_of_q3 >= 0.0, 1.0, -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
                     angle_q6_of_q3,
-                    centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
-                    0.5*(far_q6_of_q3 - near_q6_of_q3),
+                    centre_q6_of_q3 + 0.5 * (far_q6_of_q3 + near_q6_of_q3) * side_q6_of_q3,
+                    0.5 * (far_q6_of_q3 - near_q6_of_q3),
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
@@ -733,8 +844,11 @@ class ArrayPrograms(Programs):
                 part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
                 # what the motion changes of the pose
                 cost_q6_of_q3 = (
-                    sqrt(part_of_cost_q6_of_q3*part_of_cost_q6_of_q3 + part_of_cost_q6_of_q3_2*part_of_cost_q6_of_q3_2)
-                    *radius_q6
+                    sqrt(
+                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_2 * part_of_cost_q6_of_q3_2
+                    )
+                    * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11)
 
@@ -746,10 +860,7 @@ class ArrayPrograms(Programs):
                 cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
                 sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
                 cos_q6, sin_q6 = elsewhere(
-                    stays_q6_of_q3,
-                    (cos_q6, sin_q6),
-                    elsewhere_cos_q6,
-                    (cos_q6_after_q6_of_q3, sin_q6_after_q6_of_q3),
+                    stays_q6_of_q3, (cos_q6, sin_q6), elsewhere_cos_q6, (cos_q6_after_q6_of_q3, sin_q6_after_q6_of_q3)
                 )
                 return (cos_q6, sin_q6)
 
@@ -760,8 +871,16 @@ class ArrayPrograms(Programs):
                 (cos_q6, sin_q6),
                 elsewhere_cos_q6,
                 (
-                    ahead_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5_times_r33, r31, r32, radius_q6,
-                    sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_y_from_q1_fixed,
+                    ahead_q1,
+                    cos_q5,
+                    cos_q6_before_q6_of_q3,
+                    q6_radius_of_q5_times_r33,
+                    r31,
+                    r32,
+                    radius_q6,
+                    sin_q6_before_q6_of_q3,
+                    value_q6_of_q3,
+                    wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6, sin_q6)
@@ -773,41 +892,50 @@ class ArrayPrograms(Programs):
             (cos_q6, sin_q6),
             elsewhere_cos_q6,
             (
-                ahead_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5_times_r33, r31, r32, radius_q6,
-                sin_q6_before_q6_of_q3, size_of_value_q6_of_q3, value_q6_of_q3, wrist_y_from_q1_fixed,
+                ahead_q1,
+                cos_q5,
+                cos_q6_before_q6_of_q3,
+                q6_radius_of_q5_times_r33,
+                r31,
+                r32,
+                radius_q6,
+                sin_q6_before_q6_of_q3,
+                size_of_value_q6_of_q3,
+                value_q6_of_q3,
+                wrist_y_from_q1_fixed,
             ),
         )
-        r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5_times_r33
-        wrist_x_from_q1 = ahead_q1 - d5*r21_from_q1_before_q56  # what the unknown links must span
-        r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)  # 1 - cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        r21_from_q1_before_q6 = r31 * cos_q6 - r32 * sin_q6
+        r21_from_q1_before_q56 = r21_from_q1_before_q6 * cos_q5 - q6_radius_of_q5_times_r33
+        wrist_x_from_q1 = ahead_q1 - d5 * r21_from_q1_before_q56  # what the unknown links must span
+        r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
+        one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
         require(status, sine_square_q3 >= -scale_q3_squared_times_rounding, Status.UNREACHABLE)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = select(absolute(both_q3) > 0.0, both_q3, 1.0)
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
-        sin_q3 = 2.0*root(sine_square_q3)*sigma_elbow/absolute(sum_q3)
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / sum_q3
+        sin_q3 = 2.0 * root(sine_square_q3) * sigma_elbow / absolute(sum_q3)
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
             return (direction_x_q2, direction_y_q2)
 
-        arm_along_q2 = a2 + a3*cos_q3
-        arm_across_q2 = a3*sin_q3
+        arm_along_q2 = a2 + a3 * cos_q3
+        arm_across_q2 = a3 * sin_q3
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-        direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-        direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
+        direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
         direction_x_q2, direction_y_q2 = elsewhere(
             reach > machine_scale_times_free_angle,
             (direction_x_q2, direction_y_q2),
@@ -816,22 +944,22 @@ class ArrayPrograms(Programs):
         )
         angle_q2 = atan2(direction_y_q2, direction_x_q2)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(offset_a2 + angle_q2/DEGREE, near_a2)  # A2: its turn
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        axis_a2 = nearest_period(offset_a2 + angle_q2 / DEGREE, near_a2)  # A2: its turn
         angle_q3 = atan2(sin_q3, cos_q3)
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(offset_a3 + angle_q3/DEGREE, near_a3)  # A3: its turn
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        axis_a3 = nearest_period(offset_a3 + angle_q3 / DEGREE, near_a3)  # A3: its turn
         angle_with_q4 = atan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # q4: what the sum q234 leaves; A4: its turn
-        axis_a4 = nearest_period(offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)/DEGREE, near_a4)
+        axis_a4 = nearest_period(offset_a4 + (angle_with_q4 - angle_q2 - angle_q3) / DEGREE, near_a4)
         open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
+        near_a5 = select(turn_a5 != 0, 360.0 * select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         axis_a5 = nearest_period(offset_a5 + degrees(q6_radius_of_q5, cos_q5), near_a5)  # A5: its turn
         open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
+        near_a6 = select(turn_a6 != 0, 360.0 * select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         axis_a6 = nearest_period(offset_a6 + degrees(sin_q6, cos_q6), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
@@ -839,18 +967,9 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        highest_a4 = k.highest_a4
-        highest_a5 = k.highest_a5
-        highest_a6 = k.highest_a6
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        lowest_a4 = k.lowest_a4
-        lowest_a5 = k.lowest_a5
-        lowest_a6 = k.lowest_a6
+        highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+        highest_a5, highest_a6, lowest_a1, lowest_a2 = k.highest_a5, k.highest_a6, k.lowest_a1, k.lowest_a2
+        lowest_a3, lowest_a4, lowest_a5, lowest_a6 = k.lowest_a3, k.lowest_a4, k.lowest_a5, k.lowest_a6
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -867,7 +986,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -875,123 +994,127 @@ class ArrayPrograms(Programs):
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self.constants
-        a2 = k.a2
-        a2_minus_a3 = k.a2_minus_a3
-        a2_plus_a3 = k.a2_plus_a3
-        a2_squared_plus_a3_squared = k.a2_squared_plus_a3_squared
-        a3 = k.a3
-        d1 = k.d1
-        d1_times_d5_times_2 = k.d1_times_d5_times_2
-        d4 = k.d4
-        d5 = k.d5
-        d6 = k.d6
+        a2, a2_minus_a3, a2_plus_a3 = k.a2, k.a2_minus_a3, k.a2_plus_a3
+        a2_squared_plus_a3_squared, a3, d1 = k.a2_squared_plus_a3_squared, k.a3, k.d1
+        d1_times_d5_times_2, d4, d5, d6 = k.d1_times_d5_times_2, k.d4, k.d5, k.d6
         machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        mid_a4 = k.mid_a4
-        mid_a5 = k.mid_a5
-        mid_a6 = k.mid_a6
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        part_of_cos_q6 = k.part_of_cos_q6
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        offset_a6, part_of_cos_q6 = k.offset_a6, k.part_of_cos_q6
         part_of_divisor_q6_q1_for_q3 = k.part_of_divisor_q6_q1_for_q3
-        part_of_highest_q6_q1_for_q3 = k.part_of_highest_q6_q1_for_q3
-        rounding_q1 = k.rounding_q1
-        scale_q3_squared_times_rounding = k.scale_q3_squared_times_rounding
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        single_a4 = k.single_a4
-        single_a5 = k.single_a5
-        single_a6 = k.single_a6
-        size_q1_for_q3 = k.size_q1_for_q3
-        size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
-        twice_d5 = k.twice_d5
+        part_of_highest_q6_q1_for_q3, rounding_q1 = k.part_of_highest_q6_q1_for_q3, k.rounding_q1
+        scale_q3_squared_times_rounding, single_a1 = k.scale_q3_squared_times_rounding, k.single_a1
+        single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
+        single_a6, size_q1_for_q3 = k.single_a6, k.size_q1_for_q3
+        size_q1_for_q3_times_rounding, twice_d5 = k.size_q1_for_q3_times_rounding, k.twice_d5
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(ref_a4) <= 1e9)
+            & (absolute(ref_a5) <= 1e9)
+            & (absolute(ref_a6) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        wrist_x = x - d6*r13  # the point that the last joints turn about
-        wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        distance_q1_squared = distance_q1*distance_q1
+        wrist_x = x - d6 * r13  # the point that the last joints turn about
+        wrist_y = y - d6 * r23
+        distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # q1: of the point from its axis
+        ahead_squared_q1 = (distance_q1 - d4) * (d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1 * distance_q1
         # q1: out of reach
-        require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
+        require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1, Status.UNREACHABLE)
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3_right = root(ahead_squared_q1)
 
         def elsewhere_cos_q1_before_q1_for_q3_left(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3_left = cos(free_a1)  # its reference where it is free
             sin_q1_before_q1_for_q3_left = sin(free_a1)
             cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left  # its reference where it is free
             sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
             return (
-                cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
+                cos_q1_before_q1_for_q3_left,
+                sin_q1_before_q1_for_q3_left,
+                cos_q1_before_q1_for_q3_right,
                 sin_q1_before_q1_for_q3_right,
             )
 
         # its reference where it is free
-        cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/distance_q1_squared
-        sin_q1_before_q1_for_q3_left = (d4*wrist_x - ahead_q1_before_q1_for_q3_right*wrist_y)/distance_q1_squared
+        cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_right * wrist_x - d4 * wrist_y) / distance_q1_squared
+        sin_q1_before_q1_for_q3_left = (d4 * wrist_x - ahead_q1_before_q1_for_q3_right * wrist_y) / distance_q1_squared
         # its reference where it is free
-        cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/distance_q1_squared
-        sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_y + d4*wrist_x)/distance_q1_squared
-        found = elsewhere(
+        cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right * wrist_x - d4 * wrist_y) / distance_q1_squared
+        sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right * wrist_y + d4 * wrist_x) / distance_q1_squared
+        (
+            cos_q1_before_q1_for_q3_left,
+            sin_q1_before_q1_for_q3_left,
+            cos_q1_before_q1_for_q3_right,
+            sin_q1_before_q1_for_q3_right,
+        ) = elsewhere(
             distance_q1 > machine_scale_times_free_angle,
             (
-                cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
+                cos_q1_before_q1_for_q3_left,
+                sin_q1_before_q1_for_q3_left,
+                cos_q1_before_q1_for_q3_right,
                 sin_q1_before_q1_for_q3_right,
             ),
             elsewhere_cos_q1_before_q1_for_q3_left,
             (ref_a1,),
         )
-        (
-            cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
-            sin_q1_before_q1_for_q3_right,
-        ) = found
-        wrist_z = z - d6*r33
+        wrist_z = z - d6 * r33
         wrist_y_from_q1_fixed = wrist_z - d1
 
         def elsewhere_ahead_q1_left_down(
-            ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
-            cos_q1_before_q1_for_q3_right: Real, distance_q1: Real, r11: Real, r12: Real, r13: Real, r21: Real,
-            r22: Real, r23: Real, r31: Real, r32: Real, r33: Real, ref_a6: Real, sin_q1_before_q1_for_q3_left: Real,
-            sin_q1_before_q1_for_q3_right: Real, wrist_x: Real, wrist_y: Real, wrist_y_from_q1_fixed: Real,
+            ahead_q1_before_q1_for_q3_right: Real,
+            cos_q1_before_q1_for_q3_left: Real,
+            cos_q1_before_q1_for_q3_right: Real,
+            distance_q1: Real,
+            r11: Real,
+            r12: Real,
+            r13: Real,
+            r21: Real,
+            r22: Real,
+            r23: Real,
+            r31: Real,
+            r32: Real,
+            r33: Real,
+            ref_a6: Real,
+            sin_q1_before_q1_for_q3_left: Real,
+            sin_q1_before_q1_for_q3_right: Real,
+            wrist_x: Real,
+            wrist_y: Real,
+            wrist_y_from_q1_fixed: Real,
             wrist_z: Real,
         ) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            free_a6 = (ref_a6 - offset_a6) * DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
-            r21_from_q1_before_q1_for_q3_left = r21*cos_q1_before_q1_for_q3_left - r11*sin_q1_before_q1_for_q3_left
-            r22_from_q1_before_q1_for_q3_left = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
+            r21_from_q1_before_q1_for_q3_left = r21 * cos_q1_before_q1_for_q3_left - r11 * sin_q1_before_q1_for_q3_left
+            r22_from_q1_before_q1_for_q3_left = r22 * cos_q1_before_q1_for_q3_left - r12 * sin_q1_before_q1_for_q3_left
             radius_q6_before_q1_for_q3_left = sqrt(
-                r21_from_q1_before_q1_for_q3_left*r21_from_q1_before_q1_for_q3_left
-                + r22_from_q1_before_q1_for_q3_left*r22_from_q1_before_q1_for_q3_left
+                r21_from_q1_before_q1_for_q3_left * r21_from_q1_before_q1_for_q3_left
+                + r22_from_q1_before_q1_for_q3_left * r22_from_q1_before_q1_for_q3_left
             )
-            cos_q5_before_q1_for_q3_left = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left
-            r21_from_q1_rate_q1_for_q3_left = -r11*cos_q1_before_q1_for_q3_left - r21*sin_q1_before_q1_for_q3_left
-            r22_from_q1_rate_q1_for_q3_left = -r12*cos_q1_before_q1_for_q3_left - r22*sin_q1_before_q1_for_q3_left
+            cos_q5_before_q1_for_q3_left = r13 * sin_q1_before_q1_for_q3_left - r23 * cos_q1_before_q1_for_q3_left
+            r21_from_q1_rate_q1_for_q3_left = -r11 * cos_q1_before_q1_for_q3_left - r21 * sin_q1_before_q1_for_q3_left
+            r22_from_q1_rate_q1_for_q3_left = -r12 * cos_q1_before_q1_for_q3_left - r22 * sin_q1_before_q1_for_q3_left
 
             def elsewhere_cos_q6_before_q1_for_q3_left_down(
-                cos_of_free_a6: Real, r21_from_q1_before_q1_for_q3_left: Real, r21_from_q1_rate_q1_for_q3_left: Real,
-                r22_from_q1_before_q1_for_q3_left: Real, r22_from_q1_rate_q1_for_q3_left: Real,
-                radius_q6_before_q1_for_q3_left: Real, sin_of_free_a6: Real,
+                cos_of_free_a6: Real,
+                r21_from_q1_before_q1_for_q3_left: Real,
+                r21_from_q1_rate_q1_for_q3_left: Real,
+                r22_from_q1_before_q1_for_q3_left: Real,
+                r22_from_q1_rate_q1_for_q3_left: Real,
+                radius_q6_before_q1_for_q3_left: Real,
+                sin_of_free_a6: Real,
             ) -> Reals:
                 cos_q6_before_q1_for_q3_left_down = cos_of_free_a6
                 sin_q6_before_q1_for_q3_left_down = -sin_of_free_a6
@@ -1002,10 +1125,10 @@ class ArrayPrograms(Programs):
 
                 radius_q6_rate_q1_for_q3_left = (
                     -(
-                        -r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
-                        - r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                        -r21_from_q1_before_q1_for_q3_left * r21_from_q1_rate_q1_for_q3_left
+                        - r22_from_q1_before_q1_for_q3_left * r22_from_q1_rate_q1_for_q3_left
                     )
-                    /radius_q6_before_q1_for_q3_left
+                    / radius_q6_before_q1_for_q3_left
                 )
                 (radius_q6_rate_q1_for_q3_left,) = elsewhere(
                     radius_q6_before_q1_for_q3_left > 0.0,
@@ -1020,116 +1143,125 @@ class ArrayPrograms(Programs):
                 cos_q6_rate_q1_for_q3_left_up = 0.0
                 sin_q6_rate_q1_for_q3_left_up = 0.0
                 return (
-                    cos_q6_before_q1_for_q3_left_down, sin_q6_before_q1_for_q3_left_down, radius_q6_rate_q1_for_q3_left,
-                    cos_q6_rate_q1_for_q3_left_down, sin_q6_rate_q1_for_q3_left_down, cos_q6_before_q1_for_q3_left_up,
-                    sin_q6_before_q1_for_q3_left_up, cos_q6_rate_q1_for_q3_left_up, sin_q6_rate_q1_for_q3_left_up,
+                    cos_q6_before_q1_for_q3_left_down,
+                    sin_q6_before_q1_for_q3_left_down,
+                    radius_q6_rate_q1_for_q3_left,
+                    cos_q6_rate_q1_for_q3_left_down,
+                    sin_q6_rate_q1_for_q3_left_down,
+                    cos_q6_before_q1_for_q3_left_up,
+                    sin_q6_before_q1_for_q3_left_up,
+                    cos_q6_rate_q1_for_q3_left_up,
+                    sin_q6_rate_q1_for_q3_left_up,
                 )
 
-            one_by_radius_q6_before_q1_for_q3_left = 1.0/radius_q6_before_q1_for_q3_left
+            one_by_radius_q6_before_q1_for_q3_left = 1.0 / radius_q6_before_q1_for_q3_left
             part_of_cos_q6_before_q1_for_q3_left_down = (
-                one_by_radius_q6_before_q1_for_q3_left*r21_from_q1_before_q1_for_q3_left
+                one_by_radius_q6_before_q1_for_q3_left * r21_from_q1_before_q1_for_q3_left
             )
             cos_q6_before_q1_for_q3_left_down = -part_of_cos_q6_before_q1_for_q3_left_down
             part_of_sin_q6_before_q1_for_q3_left_down = (
-                one_by_radius_q6_before_q1_for_q3_left*r22_from_q1_before_q1_for_q3_left
+                one_by_radius_q6_before_q1_for_q3_left * r22_from_q1_before_q1_for_q3_left
             )
             sin_q6_before_q1_for_q3_left_down = part_of_sin_q6_before_q1_for_q3_left_down
             radius_q6_rate_q1_for_q3_left = (
                 -(
-                    -r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
-                    - r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                    -r21_from_q1_before_q1_for_q3_left * r21_from_q1_rate_q1_for_q3_left
+                    - r22_from_q1_before_q1_for_q3_left * r22_from_q1_rate_q1_for_q3_left
                 )
-                /radius_q6_before_q1_for_q3_left
+                / radius_q6_before_q1_for_q3_left
             )
-            cos_q6_rate_q1_for_q3_left_down = (
-                one_by_radius_q6_before_q1_for_q3_left
-                *(
-                    part_of_cos_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
-                    - r21_from_q1_rate_q1_for_q3_left
-                )
+            cos_q6_rate_q1_for_q3_left_down = one_by_radius_q6_before_q1_for_q3_left * (
+                part_of_cos_q6_before_q1_for_q3_left_down * radius_q6_rate_q1_for_q3_left
+                - r21_from_q1_rate_q1_for_q3_left
             )
             sin_q6_rate_q1_for_q3_left_down = (
-                (
-                    r22_from_q1_rate_q1_for_q3_left
-                    - part_of_sin_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
-                )
-                *one_by_radius_q6_before_q1_for_q3_left
-            )
+                r22_from_q1_rate_q1_for_q3_left
+                - part_of_sin_q6_before_q1_for_q3_left_down * radius_q6_rate_q1_for_q3_left
+            ) * one_by_radius_q6_before_q1_for_q3_left
             cos_q6_before_q1_for_q3_left_up = -cos_q6_before_q1_for_q3_left_down
             sin_q6_before_q1_for_q3_left_up = -part_of_sin_q6_before_q1_for_q3_left_down
             cos_q6_rate_q1_for_q3_left_up = (
-                (
-                    r21_from_q1_rate_q1_for_q3_left
-                    - part_of_cos_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
-                )
-                *one_by_radius_q6_before_q1_for_q3_left
+                r21_from_q1_rate_q1_for_q3_left
+                - part_of_cos_q6_before_q1_for_q3_left_down * radius_q6_rate_q1_for_q3_left
+            ) * one_by_radius_q6_before_q1_for_q3_left
+            sin_q6_rate_q1_for_q3_left_up = one_by_radius_q6_before_q1_for_q3_left * (
+                part_of_sin_q6_before_q1_for_q3_left_down * radius_q6_rate_q1_for_q3_left
+                - r22_from_q1_rate_q1_for_q3_left
             )
-            sin_q6_rate_q1_for_q3_left_up = (
-                one_by_radius_q6_before_q1_for_q3_left
-                *(
-                    part_of_sin_q6_before_q1_for_q3_left_down*radius_q6_rate_q1_for_q3_left
-                    - r22_from_q1_rate_q1_for_q3_left
-                )
-            )
-            found = elsewhere(
+            (
+                cos_q6_before_q1_for_q3_left_down,
+                sin_q6_before_q1_for_q3_left_down,
+                radius_q6_rate_q1_for_q3_left,
+                cos_q6_rate_q1_for_q3_left_down,
+                sin_q6_rate_q1_for_q3_left_down,
+                cos_q6_before_q1_for_q3_left_up,
+                sin_q6_before_q1_for_q3_left_up,
+                cos_q6_rate_q1_for_q3_left_up,
+                sin_q6_rate_q1_for_q3_left_up,
+            ) = elsewhere(
                 radius_q6_before_q1_for_q3_left > 1e-11,
                 (
-                    cos_q6_before_q1_for_q3_left_down, sin_q6_before_q1_for_q3_left_down, radius_q6_rate_q1_for_q3_left,
-                    cos_q6_rate_q1_for_q3_left_down, sin_q6_rate_q1_for_q3_left_down, cos_q6_before_q1_for_q3_left_up,
-                    sin_q6_before_q1_for_q3_left_up, cos_q6_rate_q1_for_q3_left_up, sin_q6_rate_q1_for_q3_left_up,
+                    cos_q6_before_q1_for_q3_left_down,
+                    sin_q6_before_q1_for_q3_left_down,
+                    radius_q6_rate_q1_for_q3_left,
+                    cos_q6_rate_q1_for_q3_left_down,
+                    sin_q6_rate_q1_for_q3_left_down,
+                    cos_q6_before_q1_for_q3_left_up,
+                    sin_q6_before_q1_for_q3_left_up,
+                    cos_q6_rate_q1_for_q3_left_up,
+                    sin_q6_rate_q1_for_q3_left_up,
                 ),
                 elsewhere_cos_q6_before_q1_for_q3_left_down,
                 (
-                    cos_of_free_a6, r21_from_q1_before_q1_for_q3_left, r21_from_q1_rate_q1_for_q3_left,
-                    r22_from_q1_before_q1_for_q3_left, r22_from_q1_rate_q1_for_q3_left, radius_q6_before_q1_for_q3_left,
+                    cos_of_free_a6,
+                    r21_from_q1_before_q1_for_q3_left,
+                    r21_from_q1_rate_q1_for_q3_left,
+                    r22_from_q1_before_q1_for_q3_left,
+                    r22_from_q1_rate_q1_for_q3_left,
+                    radius_q6_before_q1_for_q3_left,
                     sin_of_free_a6,
                 ),
             )
-            (
-                cos_q6_before_q1_for_q3_left_down, sin_q6_before_q1_for_q3_left_down, radius_q6_rate_q1_for_q3_left,
-                cos_q6_rate_q1_for_q3_left_down, sin_q6_rate_q1_for_q3_left_down, cos_q6_before_q1_for_q3_left_up,
-                sin_q6_before_q1_for_q3_left_up, cos_q6_rate_q1_for_q3_left_up, sin_q6_rate_q1_for_q3_left_up,
-            ) = found
             r21_from_q1_before_q6_before_q1_for_q3_left_down = (
-                r31*cos_q6_before_q1_for_q3_left_down - r32*sin_q6_before_q1_for_q3_left_down
+                r31 * cos_q6_before_q1_for_q3_left_down - r32 * sin_q6_before_q1_for_q3_left_down
             )
             r21_from_q1_before_q56_before_q1_for_q3_left_down = (
-                r21_from_q1_before_q6_before_q1_for_q3_left_down*cos_q5_before_q1_for_q3_left
-                - r33*radius_q6_before_q1_for_q3_left
+                r21_from_q1_before_q6_before_q1_for_q3_left_down * cos_q5_before_q1_for_q3_left
+                - r33 * radius_q6_before_q1_for_q3_left
             )
             wrist_x_from_q1_before_q1_for_q3_left_down = (
-                -ahead_q1_before_q1_for_q3_right - d5*r21_from_q1_before_q56_before_q1_for_q3_left_down
+                -ahead_q1_before_q1_for_q3_right - d5 * r21_from_q1_before_q56_before_q1_for_q3_left_down
             )
             r22_from_q1_before_q6_before_q1_for_q3_left_down = (
-                r32*cos_q6_before_q1_for_q3_left_down + r31*sin_q6_before_q1_for_q3_left_down
+                r32 * cos_q6_before_q1_for_q3_left_down + r31 * sin_q6_before_q1_for_q3_left_down
             )
             wrist_y_from_q1_before_q1_for_q3_left_down = (
-                wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_left_down
+                wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q1_for_q3_left_down
             )
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3_left_down = (
-                wrist_x_from_q1_before_q1_for_q3_left_down*wrist_x_from_q1_before_q1_for_q3_left_down
-                + wrist_y_from_q1_before_q1_for_q3_left_down*wrist_y_from_q1_before_q1_for_q3_left_down
+                wrist_x_from_q1_before_q1_for_q3_left_down * wrist_x_from_q1_before_q1_for_q3_left_down
+                + wrist_y_from_q1_before_q1_for_q3_left_down * wrist_y_from_q1_before_q1_for_q3_left_down
                 - a2_squared_plus_a3_squared
             )
-            r23_from_q1_rate_q1_for_q3_left = -r13*cos_q1_before_q1_for_q3_left - r23*sin_q1_before_q1_for_q3_left
+            r23_from_q1_rate_q1_for_q3_left = -r13 * cos_q1_before_q1_for_q3_left - r23 * sin_q1_before_q1_for_q3_left
             r21_from_q1_before_q6_rate_q1_for_q3_left_down = (
-                r31*cos_q6_rate_q1_for_q3_left_down - r32*sin_q6_rate_q1_for_q3_left_down
+                r31 * cos_q6_rate_q1_for_q3_left_down - r32 * sin_q6_rate_q1_for_q3_left_down
             )
             r21_from_q1_before_q56_rate_q1_for_q3_left_down = (
-                r21_from_q1_before_q6_rate_q1_for_q3_left_down*cos_q5_before_q1_for_q3_left
-                - r21_from_q1_before_q6_before_q1_for_q3_left_down*r23_from_q1_rate_q1_for_q3_left
-                - r33*radius_q6_rate_q1_for_q3_left
+                r21_from_q1_before_q6_rate_q1_for_q3_left_down * cos_q5_before_q1_for_q3_left
+                - r21_from_q1_before_q6_before_q1_for_q3_left_down * r23_from_q1_rate_q1_for_q3_left
+                - r33 * radius_q6_rate_q1_for_q3_left
             )
-            wrist_x_from_q1_rate_q1_for_q3_left_down = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3_left_down
+            wrist_x_from_q1_rate_q1_for_q3_left_down = -d4 - d5 * r21_from_q1_before_q56_rate_q1_for_q3_left_down
             r22_from_q1_before_q6_rate_q1_for_q3_left_down = (
-                r32*cos_q6_rate_q1_for_q3_left_down + r31*sin_q6_rate_q1_for_q3_left_down
+                r32 * cos_q6_rate_q1_for_q3_left_down + r31 * sin_q6_rate_q1_for_q3_left_down
             )
-            wrist_y_from_q1_rate_q1_for_q3_left_down = d5*r22_from_q1_before_q6_rate_q1_for_q3_left_down
+            wrist_y_from_q1_rate_q1_for_q3_left_down = d5 * r22_from_q1_before_q6_rate_q1_for_q3_left_down
             # how it changes with q1
             rate_q1_for_q3_left_down = (
-                2.0*wrist_x_from_q1_before_q1_for_q3_left_down*wrist_x_from_q1_rate_q1_for_q3_left_down
-                + 2.0*wrist_y_from_q1_before_q1_for_q3_left_down*wrist_y_from_q1_rate_q1_for_q3_left_down
+                2.0 * wrist_x_from_q1_before_q1_for_q3_left_down * wrist_x_from_q1_rate_q1_for_q3_left_down
+                + 2.0 * wrist_y_from_q1_before_q1_for_q3_left_down * wrist_y_from_q1_rate_q1_for_q3_left_down
             )
 
             def elsewhere_turn_q1_for_q3_left_down() -> Reals:
@@ -1137,71 +1269,69 @@ class ArrayPrograms(Programs):
                 return (turn_q1_for_q3_left_down,)
 
             excess_q1_for_q3_left_down = select(
-                value_q1_for_q3_left_down > 0.0, value_q1_for_q3_left_down - size_q1_for_q3,
+                value_q1_for_q3_left_down > 0.0,
+                value_q1_for_q3_left_down - size_q1_for_q3,
                 size_q1_for_q3 + value_q1_for_q3_left_down,
             )
             # to the boundary of the later step
-            turn_q1_for_q3_left_down = -excess_q1_for_q3_left_down/rate_q1_for_q3_left_down
+            turn_q1_for_q3_left_down = -excess_q1_for_q3_left_down / rate_q1_for_q3_left_down
             (turn_q1_for_q3_left_down,) = elsewhere(
                 absolute(rate_q1_for_q3_left_down) > size_q1_for_q3_times_rounding,
                 (turn_q1_for_q3_left_down,),
                 elsewhere_turn_q1_for_q3_left_down,
                 (),
             )
-            turn_q1_for_q3_squared_left_down = turn_q1_for_q3_left_down*turn_q1_for_q3_left_down
+            turn_q1_for_q3_squared_left_down = turn_q1_for_q3_left_down * turn_q1_for_q3_left_down
             turned_length_q1_for_q3_left_down = root(1.0 + turn_q1_for_q3_squared_left_down)
-            one_by_turned_length_q1_for_q3_left_down = 1.0/turned_length_q1_for_q3_left_down
-            turned_cos_q1_for_q3_left_down = (
-                one_by_turned_length_q1_for_q3_left_down
-                *(cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left)
+            one_by_turned_length_q1_for_q3_left_down = 1.0 / turned_length_q1_for_q3_left_down
+            turned_cos_q1_for_q3_left_down = one_by_turned_length_q1_for_q3_left_down * (
+                cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_down * sin_q1_before_q1_for_q3_left
             )
-            turned_sin_q1_for_q3_left_down = (
-                one_by_turned_length_q1_for_q3_left_down
-                *(sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left)
+            turned_sin_q1_for_q3_left_down = one_by_turned_length_q1_for_q3_left_down * (
+                sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_down * cos_q1_before_q1_for_q3_left
             )
             # what is left of its own equation
             turned_cost_q1_for_q3_left_down = absolute(
-                d4 + turned_cos_q1_for_q3_left_down*wrist_y - turned_sin_q1_for_q3_left_down*wrist_x
+                d4 + turned_cos_q1_for_q3_left_down * wrist_y - turned_sin_q1_for_q3_left_down * wrist_x
             )
             # whether it follows q6
-            follows_q1_for_q3_left_down = (
-                (turn_q1_for_q3_squared_left_down > 1e-12)
-                | (
-                    (
-                        r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
-                        + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
-                    )
-                    *turn_q1_for_q3_squared_left_down > 1e-12*radius_q6_before_q1_for_q3_left
-                    *radius_q6_before_q1_for_q3_left
+            follows_q1_for_q3_left_down = (turn_q1_for_q3_squared_left_down > 1e-12) | (
+                (
+                    r21_from_q1_rate_q1_for_q3_left * r21_from_q1_rate_q1_for_q3_left
+                    + r22_from_q1_rate_q1_for_q3_left * r22_from_q1_rate_q1_for_q3_left
                 )
+                * turn_q1_for_q3_squared_left_down
+                > 1e-12 * radius_q6_before_q1_for_q3_left * radius_q6_before_q1_for_q3_left
             )
-            part_of_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5*wrist_z
-            part_of_across_q6_q1_for_q3_2_left = -ahead_q1_before_q1_for_q3_right*twice_d5*cos_q5_before_q1_for_q3_left
-            along_q6_q1_for_q3_left = -part_of_across_q6_q1_for_q3*r32 - part_of_across_q6_q1_for_q3_2_left*r31
-            across_q6_q1_for_q3_left = part_of_across_q6_q1_for_q3_2_left*r32 - part_of_across_q6_q1_for_q3*r31
+            part_of_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5 * wrist_z
+            part_of_across_q6_q1_for_q3_2_left = (
+                -ahead_q1_before_q1_for_q3_right * twice_d5 * cos_q5_before_q1_for_q3_left
+            )
+            along_q6_q1_for_q3_left = -part_of_across_q6_q1_for_q3 * r32 - part_of_across_q6_q1_for_q3_2_left * r31
+            across_q6_q1_for_q3_left = part_of_across_q6_q1_for_q3_2_left * r32 - part_of_across_q6_q1_for_q3 * r31
             swing_q6_q1_for_q3_left = sqrt(
-                across_q6_q1_for_q3_left*across_q6_q1_for_q3_left + along_q6_q1_for_q3_left*along_q6_q1_for_q3_left
+                across_q6_q1_for_q3_left * across_q6_q1_for_q3_left + along_q6_q1_for_q3_left * along_q6_q1_for_q3_left
             )
             r21_from_q1_before_q6_before_q1_for_q3_left_up = (
-                r31*cos_q6_before_q1_for_q3_left_up - r32*sin_q6_before_q1_for_q3_left_up
+                r31 * cos_q6_before_q1_for_q3_left_up - r32 * sin_q6_before_q1_for_q3_left_up
             )
             r21_from_q1_before_q56_before_q1_for_q3_left_up = (
-                r21_from_q1_before_q6_before_q1_for_q3_left_up*cos_q5_before_q1_for_q3_left
-                + r33*radius_q6_before_q1_for_q3_left
+                r21_from_q1_before_q6_before_q1_for_q3_left_up * cos_q5_before_q1_for_q3_left
+                + r33 * radius_q6_before_q1_for_q3_left
             )
             wrist_x_from_q1_before_q1_for_q3_left_up = (
-                -ahead_q1_before_q1_for_q3_right - d5*r21_from_q1_before_q56_before_q1_for_q3_left_up
+                -ahead_q1_before_q1_for_q3_right - d5 * r21_from_q1_before_q56_before_q1_for_q3_left_up
             )
             r22_from_q1_before_q6_before_q1_for_q3_left_up = (
-                r32*cos_q6_before_q1_for_q3_left_up + r31*sin_q6_before_q1_for_q3_left_up
+                r32 * cos_q6_before_q1_for_q3_left_up + r31 * sin_q6_before_q1_for_q3_left_up
             )
             wrist_y_from_q1_before_q1_for_q3_left_up = (
-                wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_left_up
+                wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q1_for_q3_left_up
             )
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3_left_up = (
-                wrist_x_from_q1_before_q1_for_q3_left_up*wrist_x_from_q1_before_q1_for_q3_left_up
-                + wrist_y_from_q1_before_q1_for_q3_left_up*wrist_y_from_q1_before_q1_for_q3_left_up
+                wrist_x_from_q1_before_q1_for_q3_left_up * wrist_x_from_q1_before_q1_for_q3_left_up
+                + wrist_y_from_q1_before_q1_for_q3_left_up * wrist_y_from_q1_before_q1_for_q3_left_up
                 - a2_squared_plus_a3_squared
             )
 
@@ -1211,17 +1341,20 @@ class ArrayPrograms(Programs):
                 highest_q6_q1_for_q3_left_up = 1.0  # the arc: cosines from its centre
                 lowest_q6_q1_for_q3_left_up = -1.0
                 return (
-                    highest_q6_q1_for_q3_left_down, lowest_q6_q1_for_q3_left_down, highest_q6_q1_for_q3_left_up,
+                    highest_q6_q1_for_q3_left_down,
+                    lowest_q6_q1_for_q3_left_down,
+                    highest_q6_q1_for_q3_left_up,
                     lowest_q6_q1_for_q3_left_up,
                 )
 
             level_q6_q1_for_q3_left_down = (
-                value_q1_for_q3_left_down - across_q6_q1_for_q3_left*sin_q6_before_q1_for_q3_left_down
-                - along_q6_q1_for_q3_left*cos_q6_before_q1_for_q3_left_down
+                value_q1_for_q3_left_down
+                - across_q6_q1_for_q3_left * sin_q6_before_q1_for_q3_left_down
+                - along_q6_q1_for_q3_left * cos_q6_before_q1_for_q3_left_down
             )
             part_of_highest_q6_q1_for_q3_2_left_down = (
-                (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_left_down)/swing_q6_q1_for_q3_left
-            )
+                part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_left_down
+            ) / swing_q6_q1_for_q3_left
             # the arc: cosines from its centre
             highest_q6_q1_for_q3_left_down = select(
                 part_of_highest_q6_q1_for_q3_2_left_down > 1.0,
@@ -1229,20 +1362,21 @@ class ArrayPrograms(Programs):
                 select(part_of_highest_q6_q1_for_q3_2_left_down < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2_left_down),
             )
             part_of_lowest_q6_q1_for_q3_left_down = (
-                (level_q6_q1_for_q3_left_down + part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3_left
-            )
+                level_q6_q1_for_q3_left_down + part_of_highest_q6_q1_for_q3
+            ) / swing_q6_q1_for_q3_left
             lowest_q6_q1_for_q3_left_down = select(
                 -part_of_lowest_q6_q1_for_q3_left_down > 1.0,
                 1.0,
                 select(-part_of_lowest_q6_q1_for_q3_left_down < -1.0, -1.0, -part_of_lowest_q6_q1_for_q3_left_down),
             )
             level_q6_q1_for_q3_left_up = (
-                value_q1_for_q3_left_up - across_q6_q1_for_q3_left*sin_q6_before_q1_for_q3_left_up
-                - along_q6_q1_for_q3_left*cos_q6_before_q1_for_q3_left_up
+                value_q1_for_q3_left_up
+                - across_q6_q1_for_q3_left * sin_q6_before_q1_for_q3_left_up
+                - along_q6_q1_for_q3_left * cos_q6_before_q1_for_q3_left_up
             )
             part_of_highest_q6_q1_for_q3_2_left_up = (
-                (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_left_up)/swing_q6_q1_for_q3_left
-            )
+                part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_left_up
+            ) / swing_q6_q1_for_q3_left
             # the arc: cosines from its centre
             highest_q6_q1_for_q3_left_up = select(
                 part_of_highest_q6_q1_for_q3_2_left_up > 1.0,
@@ -1250,87 +1384,86 @@ class ArrayPrograms(Programs):
                 select(part_of_highest_q6_q1_for_q3_2_left_up < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2_left_up),
             )
             part_of_lowest_q6_q1_for_q3_left_up = (
-                (level_q6_q1_for_q3_left_up + part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3_left
-            )
+                level_q6_q1_for_q3_left_up + part_of_highest_q6_q1_for_q3
+            ) / swing_q6_q1_for_q3_left
             lowest_q6_q1_for_q3_left_up = select(
                 -part_of_lowest_q6_q1_for_q3_left_up > 1.0,
                 1.0,
                 select(-part_of_lowest_q6_q1_for_q3_left_up < -1.0, -1.0, -part_of_lowest_q6_q1_for_q3_left_up),
             )
-            found = elsewhere(
+            (
+                highest_q6_q1_for_q3_left_down,
+                lowest_q6_q1_for_q3_left_down,
+                highest_q6_q1_for_q3_left_up,
+                lowest_q6_q1_for_q3_left_up,
+            ) = elsewhere(
                 swing_q6_q1_for_q3_left > part_of_divisor_q6_q1_for_q3,
                 (
-                    highest_q6_q1_for_q3_left_down, lowest_q6_q1_for_q3_left_down, highest_q6_q1_for_q3_left_up,
+                    highest_q6_q1_for_q3_left_down,
+                    lowest_q6_q1_for_q3_left_down,
+                    highest_q6_q1_for_q3_left_up,
                     lowest_q6_q1_for_q3_left_up,
                 ),
                 elsewhere_highest_q6_q1_for_q3_left_down,
                 (),
             )
-            (
-                highest_q6_q1_for_q3_left_down, lowest_q6_q1_for_q3_left_down, highest_q6_q1_for_q3_left_up,
-                lowest_q6_q1_for_q3_left_up,
-            ) = found
             near_q6_q1_for_q3_left_down = atan2(
-                root((1.0 - highest_q6_q1_for_q3_left_down)*(1.0 + highest_q6_q1_for_q3_left_down)),
+                root((1.0 - highest_q6_q1_for_q3_left_down) * (1.0 + highest_q6_q1_for_q3_left_down)),
                 highest_q6_q1_for_q3_left_down,
             )
             far_q6_q1_for_q3_left_down = atan2(
-                root((1.0 - lowest_q6_q1_for_q3_left_down)*(1.0 + lowest_q6_q1_for_q3_left_down)),
+                root((1.0 - lowest_q6_q1_for_q3_left_down) * (1.0 + lowest_q6_q1_for_q3_left_down)),
                 lowest_q6_q1_for_q3_left_down,
             )
             centre_q6_q1_for_q3_left = atan2(across_q6_q1_for_q3_left, along_q6_q1_for_q3_left)
             angle_q6_q1_for_q3_left_down = atan2(sin_q6_before_q1_for_q3_left_down, cos_q6_before_q1_for_q3_left_down)
             side_q6_q1_for_q3_left_down = select(
-                (
-                    along_q6_q1_for_q3_left*sin_q6_before_q1_for_q3_left_down
-                    - across_q6_q1_for_q3_left*cos_q6_before_q1_for_q3_left_down >= 0.0
-                ),
+                along_q6_q1_for_q3_left * sin_q6_before_q1_for_q3_left_down
+                - across_q6_q1_for_q3_left * cos_q6_before_q1_for_q3_left_down
+                >= 0.0,
                 1.0,
                 -1.0,
             )
             moved_q6_q1_for_q3_left_down = nearest_on_arc(
                 angle_q6_q1_for_q3_left_down,
-                (
-                    centre_q6_q1_for_q3_left
-                    + 0.5*(far_q6_q1_for_q3_left_down + near_q6_q1_for_q3_left_down)*side_q6_q1_for_q3_left_down
-                ),
-                0.5*far_q6_q1_for_q3_left_down - 0.5*near_q6_q1_for_q3_left_down,
+                centre_q6_q1_for_q3_left
+                + 0.5 * (far_q6_q1_for_q3_left_down + near_q6_q1_for_q3_left_down) * side_q6_q1_for_q3_left_down,
+                0.5 * far_q6_q1_for_q3_left_down - 0.5 * near_q6_q1_for_q3_left_down,
             )
             near_cos_q6_q1_for_q3_left_down = cos(moved_q6_q1_for_q3_left_down)
             near_sin_q6_q1_for_q3_left_down = sin(moved_q6_q1_for_q3_left_down)
-            near_q_q1_for_q3_left_down = near_cos_q6_q1_for_q3_left_down*r12 + near_sin_q6_q1_for_q3_left_down*r11
-            near_p_q1_for_q3_left_down = -near_cos_q6_q1_for_q3_left_down*r22 - near_sin_q6_q1_for_q3_left_down*r21
+            near_q_q1_for_q3_left_down = near_cos_q6_q1_for_q3_left_down * r12 + near_sin_q6_q1_for_q3_left_down * r11
+            near_p_q1_for_q3_left_down = -near_cos_q6_q1_for_q3_left_down * r22 - near_sin_q6_q1_for_q3_left_down * r21
             near_radius_q1_for_q3_left_down = sqrt(
-                near_p_q1_for_q3_left_down*near_p_q1_for_q3_left_down
-                + near_q_q1_for_q3_left_down*near_q_q1_for_q3_left_down
+                near_p_q1_for_q3_left_down * near_p_q1_for_q3_left_down
+                + near_q_q1_for_q3_left_down * near_q_q1_for_q3_left_down
             )
 
             def elsewhere_near_cos_q1_for_q3_left_down(
-                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
+                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real
             ) -> Reals:
                 near_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows
                 near_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
                 return (near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down)
 
             near_along_q1_for_q3_left_down = (
-                (near_cos_q6_q1_for_q3_left_down*r21 - near_sin_q6_q1_for_q3_left_down*r22)*near_q_q1_for_q3_left_down
-                - (near_sin_q6_q1_for_q3_left_down*r12 - near_cos_q6_q1_for_q3_left_down*r11)*near_p_q1_for_q3_left_down
-            )
+                near_cos_q6_q1_for_q3_left_down * r21 - near_sin_q6_q1_for_q3_left_down * r22
+            ) * near_q_q1_for_q3_left_down - (
+                near_sin_q6_q1_for_q3_left_down * r12 - near_cos_q6_q1_for_q3_left_down * r11
+            ) * near_p_q1_for_q3_left_down
             # of two opposite ways
             near_towards_q1_for_q3_left_down = select(
-                absolute(near_along_q1_for_q3_left_down) <= 5e-12*near_radius_q1_for_q3_left_down,
-                (
-                    near_p_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left
-                    - near_q_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left
-                ),
+                absolute(near_along_q1_for_q3_left_down) <= 5e-12 * near_radius_q1_for_q3_left_down,
+                near_p_q1_for_q3_left_down * sin_q1_before_q1_for_q3_left
+                - near_q_q1_for_q3_left_down * cos_q1_before_q1_for_q3_left,
                 near_along_q1_for_q3_left_down,
             )
             near_side_q1_for_q3_left_down = select(near_towards_q1_for_q3_left_down < 0.0, -1.0, 1.0)
-            part_of_near_cos_q1_for_q3_left_down = near_side_q1_for_q3_left_down/near_radius_q1_for_q3_left_down
+            part_of_near_cos_q1_for_q3_left_down = near_side_q1_for_q3_left_down / near_radius_q1_for_q3_left_down
             # the earlier angle follows
-            near_cos_q1_for_q3_left_down = -near_q_q1_for_q3_left_down*part_of_near_cos_q1_for_q3_left_down
+            near_cos_q1_for_q3_left_down = -near_q_q1_for_q3_left_down * part_of_near_cos_q1_for_q3_left_down
             # it stays where every angle gives this one
-            near_sin_q1_for_q3_left_down = near_p_q1_for_q3_left_down*part_of_near_cos_q1_for_q3_left_down
+            near_sin_q1_for_q3_left_down = near_p_q1_for_q3_left_down * part_of_near_cos_q1_for_q3_left_down
             near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down = elsewhere(
                 near_radius_q1_for_q3_left_down > 1e-12,
                 (near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down),
@@ -1338,147 +1471,151 @@ class ArrayPrograms(Programs):
                 (cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left),
             )
             near_q6_q1_for_q3_left_up = atan2(
-                root((1.0 - highest_q6_q1_for_q3_left_up)*(1.0 + highest_q6_q1_for_q3_left_up)),
+                root((1.0 - highest_q6_q1_for_q3_left_up) * (1.0 + highest_q6_q1_for_q3_left_up)),
                 highest_q6_q1_for_q3_left_up,
             )
             far_q6_q1_for_q3_left_up = atan2(
-                root((1.0 - lowest_q6_q1_for_q3_left_up)*(1.0 + lowest_q6_q1_for_q3_left_up)),
+                root((1.0 - lowest_q6_q1_for_q3_left_up) * (1.0 + lowest_q6_q1_for_q3_left_up)),
                 lowest_q6_q1_for_q3_left_up,
             )
             angle_q6_q1_for_q3_left_up = atan2(sin_q6_before_q1_for_q3_left_up, cos_q6_before_q1_for_q3_left_up)
             side_q6_q1_for_q3_left_up = select(
-                (
-                    along_q6_q1_for_q3_left*sin_q6_before_q1_for_q3_left_up
-                    - across_q6_q1_for_q3_left*cos_q6_before_q1_for_q3_left_up >= 0.0
-                ),
+                along_q6_q1_for_q3_left * sin_q6_before_q1_for_q3_left_up
+                - across_q6_q1_for_q3_left * cos_q6_before_q1_for_q3_left_up
+                >= 0.0,
                 1.0,
                 -1.0,
             )
             moved_q6_q1_for_q3_left_up = nearest_on_arc(
                 angle_q6_q1_for_q3_left_up,
-                (
-                    centre_q6_q1_for_q3_left
-                    + 0.5*(far_q6_q1_for_q3_left_up + near_q6_q1_for_q3_left_up)*side_q6_q1_for_q3_left_up
-                ),
-                0.5*far_q6_q1_for_q3_left_up - 0.5*near_q6_q1_for_q3_left_up,
+                centre_q6_q1_for_q3_left
+                + 0.5 * (far_q6_q1_for_q3_left_up + near_q6_q1_for_q3_left_up) * side_q6_q1_for_q3_left_up,
+                0.5 * far_q6_q1_for_q3_left_up - 0.5 * near_q6_q1_for_q3_left_up,
             )
             near_cos_q6_q1_for_q3_left_up = cos(moved_q6_q1_for_q3_left_up)
             near_sin_q6_q1_for_q3_left_up = sin(moved_q6_q1_for_q3_left_up)
-            near_q_q1_for_q3_left_up = -near_cos_q6_q1_for_q3_left_up*r12 - near_sin_q6_q1_for_q3_left_up*r11
-            near_p_q1_for_q3_left_up = near_cos_q6_q1_for_q3_left_up*r22 + near_sin_q6_q1_for_q3_left_up*r21
+            near_q_q1_for_q3_left_up = -near_cos_q6_q1_for_q3_left_up * r12 - near_sin_q6_q1_for_q3_left_up * r11
+            near_p_q1_for_q3_left_up = near_cos_q6_q1_for_q3_left_up * r22 + near_sin_q6_q1_for_q3_left_up * r21
             near_radius_q1_for_q3_left_up = sqrt(
-                near_p_q1_for_q3_left_up*near_p_q1_for_q3_left_up + near_q_q1_for_q3_left_up*near_q_q1_for_q3_left_up
+                near_p_q1_for_q3_left_up * near_p_q1_for_q3_left_up
+                + near_q_q1_for_q3_left_up * near_q_q1_for_q3_left_up
             )
 
             def elsewhere_near_cos_q1_for_q3_left_up(
-                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
+                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real
             ) -> Reals:
                 near_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows
                 near_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
                 return (near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up)
 
             near_along_q1_for_q3_left_up = (
-                (near_sin_q6_q1_for_q3_left_up*r12 - near_cos_q6_q1_for_q3_left_up*r11)*near_p_q1_for_q3_left_up
-                - (near_cos_q6_q1_for_q3_left_up*r21 - near_sin_q6_q1_for_q3_left_up*r22)*near_q_q1_for_q3_left_up
-            )
+                near_sin_q6_q1_for_q3_left_up * r12 - near_cos_q6_q1_for_q3_left_up * r11
+            ) * near_p_q1_for_q3_left_up - (
+                near_cos_q6_q1_for_q3_left_up * r21 - near_sin_q6_q1_for_q3_left_up * r22
+            ) * near_q_q1_for_q3_left_up
             # of two opposite ways
             near_towards_q1_for_q3_left_up = select(
-                absolute(near_along_q1_for_q3_left_up) <= 5e-12*near_radius_q1_for_q3_left_up,
-                (
-                    near_p_q1_for_q3_left_up*sin_q1_before_q1_for_q3_left
-                    - near_q_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left
-                ),
+                absolute(near_along_q1_for_q3_left_up) <= 5e-12 * near_radius_q1_for_q3_left_up,
+                near_p_q1_for_q3_left_up * sin_q1_before_q1_for_q3_left
+                - near_q_q1_for_q3_left_up * cos_q1_before_q1_for_q3_left,
                 near_along_q1_for_q3_left_up,
             )
             near_side_q1_for_q3_left_up = select(near_towards_q1_for_q3_left_up < 0.0, -1.0, 1.0)
-            part_of_near_cos_q1_for_q3_left_up = near_side_q1_for_q3_left_up/near_radius_q1_for_q3_left_up
+            part_of_near_cos_q1_for_q3_left_up = near_side_q1_for_q3_left_up / near_radius_q1_for_q3_left_up
             # the earlier angle follows
-            near_cos_q1_for_q3_left_up = -near_q_q1_for_q3_left_up*part_of_near_cos_q1_for_q3_left_up
+            near_cos_q1_for_q3_left_up = -near_q_q1_for_q3_left_up * part_of_near_cos_q1_for_q3_left_up
             # it stays where every angle gives this one
-            near_sin_q1_for_q3_left_up = near_p_q1_for_q3_left_up*part_of_near_cos_q1_for_q3_left_up
+            near_sin_q1_for_q3_left_up = near_p_q1_for_q3_left_up * part_of_near_cos_q1_for_q3_left_up
             near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up = elsewhere(
                 near_radius_q1_for_q3_left_up > 1e-12,
                 (near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up),
                 elsewhere_near_cos_q1_for_q3_left_up,
                 (cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left),
             )
-            r21_from_q1_before_q1_for_q3_right = r21*cos_q1_before_q1_for_q3_right - r11*sin_q1_before_q1_for_q3_right
-            r22_from_q1_before_q1_for_q3_right = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
+            r21_from_q1_before_q1_for_q3_right = (
+                r21 * cos_q1_before_q1_for_q3_right - r11 * sin_q1_before_q1_for_q3_right
+            )
+            r22_from_q1_before_q1_for_q3_right = (
+                r22 * cos_q1_before_q1_for_q3_right - r12 * sin_q1_before_q1_for_q3_right
+            )
             radius_q6_before_q1_for_q3_right = sqrt(
-                r21_from_q1_before_q1_for_q3_right*r21_from_q1_before_q1_for_q3_right
-                + r22_from_q1_before_q1_for_q3_right*r22_from_q1_before_q1_for_q3_right
+                r21_from_q1_before_q1_for_q3_right * r21_from_q1_before_q1_for_q3_right
+                + r22_from_q1_before_q1_for_q3_right * r22_from_q1_before_q1_for_q3_right
             )
-            cos_q5_before_q1_for_q3_right = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right
+            cos_q5_before_q1_for_q3_right = r13 * sin_q1_before_q1_for_q3_right - r23 * cos_q1_before_q1_for_q3_right
             length_q6_before_q1_for_q3_right = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, radius_q6_before_q1_for_q3_right, 1.0,
+                radius_q6_before_q1_for_q3_right > 1e-11, radius_q6_before_q1_for_q3_right, 1.0
             )
-            one_by_radius_q6_before_q1_for_q3_right = 1.0/length_q6_before_q1_for_q3_right
+            one_by_radius_q6_before_q1_for_q3_right = 1.0 / length_q6_before_q1_for_q3_right
             part_of_cos_q6_before_q1_for_q3_right_down = (
-                one_by_radius_q6_before_q1_for_q3_right*r21_from_q1_before_q1_for_q3_right
+                one_by_radius_q6_before_q1_for_q3_right * r21_from_q1_before_q1_for_q3_right
             )
             cos_q6_before_q1_for_q3_right_down = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6
             )
             part_of_sin_q6_before_q1_for_q3_right_down = (
-                one_by_radius_q6_before_q1_for_q3_right*r22_from_q1_before_q1_for_q3_right
+                one_by_radius_q6_before_q1_for_q3_right * r22_from_q1_before_q1_for_q3_right
             )
             sin_q6_before_q1_for_q3_right_down = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6
             )
             r21_from_q1_before_q6_before_q1_for_q3_right_down = (
-                r31*cos_q6_before_q1_for_q3_right_down - r32*sin_q6_before_q1_for_q3_right_down
+                r31 * cos_q6_before_q1_for_q3_right_down - r32 * sin_q6_before_q1_for_q3_right_down
             )
             r21_from_q1_before_q56_before_q1_for_q3_right_down = (
-                r21_from_q1_before_q6_before_q1_for_q3_right_down*cos_q5_before_q1_for_q3_right
-                - r33*radius_q6_before_q1_for_q3_right
+                r21_from_q1_before_q6_before_q1_for_q3_right_down * cos_q5_before_q1_for_q3_right
+                - r33 * radius_q6_before_q1_for_q3_right
             )
             wrist_x_from_q1_before_q1_for_q3_right_down = (
-                ahead_q1_before_q1_for_q3_right - d5*r21_from_q1_before_q56_before_q1_for_q3_right_down
+                ahead_q1_before_q1_for_q3_right - d5 * r21_from_q1_before_q56_before_q1_for_q3_right_down
             )
             r22_from_q1_before_q6_before_q1_for_q3_right_down = (
-                r32*cos_q6_before_q1_for_q3_right_down + r31*sin_q6_before_q1_for_q3_right_down
+                r32 * cos_q6_before_q1_for_q3_right_down + r31 * sin_q6_before_q1_for_q3_right_down
             )
             wrist_y_from_q1_before_q1_for_q3_right_down = (
-                wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_right_down
+                wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q1_for_q3_right_down
             )
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3_right_down = (
-                wrist_x_from_q1_before_q1_for_q3_right_down*wrist_x_from_q1_before_q1_for_q3_right_down
-                + wrist_y_from_q1_before_q1_for_q3_right_down*wrist_y_from_q1_before_q1_for_q3_right_down
+                wrist_x_from_q1_before_q1_for_q3_right_down * wrist_x_from_q1_before_q1_for_q3_right_down
+                + wrist_y_from_q1_before_q1_for_q3_right_down * wrist_y_from_q1_before_q1_for_q3_right_down
                 - a2_squared_plus_a3_squared
             )
-            part_of_across_q6_q1_for_q3_2_right = ahead_q1_before_q1_for_q3_right*twice_d5*cos_q5_before_q1_for_q3_right
-            along_q6_q1_for_q3_right = -part_of_across_q6_q1_for_q3*r32 - part_of_across_q6_q1_for_q3_2_right*r31
-            across_q6_q1_for_q3_right = part_of_across_q6_q1_for_q3_2_right*r32 - part_of_across_q6_q1_for_q3*r31
+            part_of_across_q6_q1_for_q3_2_right = (
+                ahead_q1_before_q1_for_q3_right * twice_d5 * cos_q5_before_q1_for_q3_right
+            )
+            along_q6_q1_for_q3_right = -part_of_across_q6_q1_for_q3 * r32 - part_of_across_q6_q1_for_q3_2_right * r31
+            across_q6_q1_for_q3_right = part_of_across_q6_q1_for_q3_2_right * r32 - part_of_across_q6_q1_for_q3 * r31
             swing_q6_q1_for_q3_right = sqrt(
-                across_q6_q1_for_q3_right*across_q6_q1_for_q3_right + along_q6_q1_for_q3_right*along_q6_q1_for_q3_right
+                across_q6_q1_for_q3_right * across_q6_q1_for_q3_right
+                + along_q6_q1_for_q3_right * along_q6_q1_for_q3_right
             )
             cos_q6_before_q1_for_q3_right_up = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, part_of_cos_q6_before_q1_for_q3_right_down, cos_of_free_a6
             )
             sin_q6_before_q1_for_q3_right_up = select(
-                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6,
+                radius_q6_before_q1_for_q3_right > 1e-11, -part_of_sin_q6_before_q1_for_q3_right_down, -sin_of_free_a6
             )
             r21_from_q1_before_q6_before_q1_for_q3_right_up = (
-                r31*cos_q6_before_q1_for_q3_right_up - r32*sin_q6_before_q1_for_q3_right_up
+                r31 * cos_q6_before_q1_for_q3_right_up - r32 * sin_q6_before_q1_for_q3_right_up
             )
             r21_from_q1_before_q56_before_q1_for_q3_right_up = (
-                r21_from_q1_before_q6_before_q1_for_q3_right_up*cos_q5_before_q1_for_q3_right
-                + r33*radius_q6_before_q1_for_q3_right
+                r21_from_q1_before_q6_before_q1_for_q3_right_up * cos_q5_before_q1_for_q3_right
+                + r33 * radius_q6_before_q1_for_q3_right
             )
             wrist_x_from_q1_before_q1_for_q3_right_up = (
-                ahead_q1_before_q1_for_q3_right - d5*r21_from_q1_before_q56_before_q1_for_q3_right_up
+                ahead_q1_before_q1_for_q3_right - d5 * r21_from_q1_before_q56_before_q1_for_q3_right_up
             )
             r22_from_q1_before_q6_before_q1_for_q3_right_up = (
-                r32*cos_q6_before_q1_for_q3_right_up + r31*sin_q6_before_q1_for_q3_right_up
+                r32 * cos_q6_before_q1_for_q3_right_up + r31 * sin_q6_before_q1_for_q3_right_up
             )
             wrist_y_from_q1_before_q1_for_q3_right_up = (
-                wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q1_for_q3_right_up
+                wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q1_for_q3_right_up
             )
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3_right_up = (
-                wrist_x_from_q1_before_q1_for_q3_right_up*wrist_x_from_q1_before_q1_for_q3_right_up
-                + wrist_y_from_q1_before_q1_for_q3_right_up*wrist_y_from_q1_before_q1_for_q3_right_up
+                wrist_x_from_q1_before_q1_for_q3_right_up * wrist_x_from_q1_before_q1_for_q3_right_up
+                + wrist_y_from_q1_before_q1_for_q3_right_up * wrist_y_from_q1_before_q1_for_q3_right_up
                 - a2_squared_plus_a3_squared
             )
 
@@ -1488,38 +1625,44 @@ class ArrayPrograms(Programs):
                 highest_q6_q1_for_q3_right_up = 1.0  # the arc: cosines from its centre
                 lowest_q6_q1_for_q3_right_up = -1.0
                 return (
-                    highest_q6_q1_for_q3_right_down, lowest_q6_q1_for_q3_right_down, highest_q6_q1_for_q3_right_up,
+                    highest_q6_q1_for_q3_right_down,
+                    lowest_q6_q1_for_q3_right_down,
+                    highest_q6_q1_for_q3_right_up,
                     lowest_q6_q1_for_q3_right_up,
                 )
 
             level_q6_q1_for_q3_right_down = (
-                value_q1_for_q3_right_down - across_q6_q1_for_q3_right*sin_q6_before_q1_for_q3_right_down
-                - along_q6_q1_for_q3_right*cos_q6_before_q1_for_q3_right_down
+                value_q1_for_q3_right_down
+                - across_q6_q1_for_q3_right * sin_q6_before_q1_for_q3_right_down
+                - along_q6_q1_for_q3_right * cos_q6_before_q1_for_q3_right_down
             )
             part_of_highest_q6_q1_for_q3_2_right_down = (
-                (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_right_down)/swing_q6_q1_for_q3_right
-            )
+                part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_right_down
+            ) / swing_q6_q1_for_q3_right
             # the arc: cosines from its centre
             highest_q6_q1_for_q3_right_down = select(
                 part_of_highest_q6_q1_for_q3_2_right_down > 1.0,
                 1.0,
-                select(part_of_highest_q6_q1_for_q3_2_right_down < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2_right_down),
+                select(
+                    part_of_highest_q6_q1_for_q3_2_right_down < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2_right_down
+                ),
             )
             part_of_lowest_q6_q1_for_q3_right_down = (
-                (level_q6_q1_for_q3_right_down + part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3_right
-            )
+                level_q6_q1_for_q3_right_down + part_of_highest_q6_q1_for_q3
+            ) / swing_q6_q1_for_q3_right
             lowest_q6_q1_for_q3_right_down = select(
                 -part_of_lowest_q6_q1_for_q3_right_down > 1.0,
                 1.0,
                 select(-part_of_lowest_q6_q1_for_q3_right_down < -1.0, -1.0, -part_of_lowest_q6_q1_for_q3_right_down),
             )
             level_q6_q1_for_q3_right_up = (
-                value_q1_for_q3_right_up - across_q6_q1_for_q3_right*sin_q6_before_q1_for_q3_right_up
-                - along_q6_q1_for_q3_right*cos_q6_before_q1_for_q3_right_up
+                value_q1_for_q3_right_up
+                - across_q6_q1_for_q3_right * sin_q6_before_q1_for_q3_right_up
+                - along_q6_q1_for_q3_right * cos_q6_before_q1_for_q3_right_up
             )
             part_of_highest_q6_q1_for_q3_2_right_up = (
-                (part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_right_up)/swing_q6_q1_for_q3_right
-            )
+                part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3_right_up
+            ) / swing_q6_q1_for_q3_right
             # the arc: cosines from its centre
             highest_q6_q1_for_q3_right_up = select(
                 part_of_highest_q6_q1_for_q3_2_right_up > 1.0,
@@ -1527,89 +1670,94 @@ class ArrayPrograms(Programs):
                 select(part_of_highest_q6_q1_for_q3_2_right_up < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2_right_up),
             )
             part_of_lowest_q6_q1_for_q3_right_up = (
-                (level_q6_q1_for_q3_right_up + part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3_right
-            )
+                level_q6_q1_for_q3_right_up + part_of_highest_q6_q1_for_q3
+            ) / swing_q6_q1_for_q3_right
             lowest_q6_q1_for_q3_right_up = select(
                 -part_of_lowest_q6_q1_for_q3_right_up > 1.0,
                 1.0,
                 select(-part_of_lowest_q6_q1_for_q3_right_up < -1.0, -1.0, -part_of_lowest_q6_q1_for_q3_right_up),
             )
-            found = elsewhere(
+            (
+                highest_q6_q1_for_q3_right_down,
+                lowest_q6_q1_for_q3_right_down,
+                highest_q6_q1_for_q3_right_up,
+                lowest_q6_q1_for_q3_right_up,
+            ) = elsewhere(
                 swing_q6_q1_for_q3_right > part_of_divisor_q6_q1_for_q3,
                 (
-                    highest_q6_q1_for_q3_right_down, lowest_q6_q1_for_q3_right_down, highest_q6_q1_for_q3_right_up,
+                    highest_q6_q1_for_q3_right_down,
+                    lowest_q6_q1_for_q3_right_down,
+                    highest_q6_q1_for_q3_right_up,
                     lowest_q6_q1_for_q3_right_up,
                 ),
                 elsewhere_highest_q6_q1_for_q3_right_down,
                 (),
             )
-            (
-                highest_q6_q1_for_q3_right_down, lowest_q6_q1_for_q3_right_down, highest_q6_q1_for_q3_right_up,
-                lowest_q6_q1_for_q3_right_up,
-            ) = found
             near_q6_q1_for_q3_right_down = atan2(
-                root((1.0 - highest_q6_q1_for_q3_right_down)*(1.0 + highest_q6_q1_for_q3_right_down)),
+                root((1.0 - highest_q6_q1_for_q3_right_down) * (1.0 + highest_q6_q1_for_q3_right_down)),
                 highest_q6_q1_for_q3_right_down,
             )
             far_q6_q1_for_q3_right_down = atan2(
-                root((1.0 - lowest_q6_q1_for_q3_right_down)*(1.0 + lowest_q6_q1_for_q3_right_down)),
+                root((1.0 - lowest_q6_q1_for_q3_right_down) * (1.0 + lowest_q6_q1_for_q3_right_down)),
                 lowest_q6_q1_for_q3_right_down,
             )
             centre_q6_q1_for_q3_right = atan2(across_q6_q1_for_q3_right, along_q6_q1_for_q3_right)
-            angle_q6_q1_for_q3_right_down = atan2(sin_q6_before_q1_for_q3_right_down, cos_q6_before_q1_for_q3_right_down)
+            angle_q6_q1_for_q3_right_down = atan2(
+                sin_q6_before_q1_for_q3_right_down, cos_q6_before_q1_for_q3_right_down
+            )
             side_q6_q1_for_q3_right_down = select(
-                (
-                    along_q6_q1_for_q3_right*sin_q6_before_q1_for_q3_right_down
-                    - across_q6_q1_for_q3_right*cos_q6_before_q1_for_q3_right_down >= 0.0
-                ),
+                along_q6_q1_for_q3_right * sin_q6_before_q1_for_q3_right_down
+                - across_q6_q1_for_q3_right * cos_q6_before_q1_for_q3_right_down
+                >= 0.0,
                 1.0,
                 -1.0,
             )
             moved_q6_q1_for_q3_right_down = nearest_on_arc(
                 angle_q6_q1_for_q3_right_down,
-                (
-                    centre_q6_q1_for_q3_right
-                    + 0.5*(far_q6_q1_for_q3_right_down + near_q6_q1_for_q3_right_down)*side_q6_q1_for_q3_right_down
-                ),
-                0.5*far_q6_q1_for_q3_right_down - 0.5*near_q6_q1_for_q3_right_down,
+                centre_q6_q1_for_q3_right
+                + 0.5 * (far_q6_q1_for_q3_right_down + near_q6_q1_for_q3_right_down) * side_q6_q1_for_q3_right_down,
+                0.5 * far_q6_q1_for_q3_right_down - 0.5 * near_q6_q1_for_q3_right_down,
             )
             near_cos_q6_q1_for_q3_right_down = cos(moved_q6_q1_for_q3_right_down)
             near_sin_q6_q1_for_q3_right_down = sin(moved_q6_q1_for_q3_right_down)
-            near_q_q1_for_q3_right_down = near_cos_q6_q1_for_q3_right_down*r12 + near_sin_q6_q1_for_q3_right_down*r11
-            near_p_q1_for_q3_right_down = -near_cos_q6_q1_for_q3_right_down*r22 - near_sin_q6_q1_for_q3_right_down*r21
+            near_q_q1_for_q3_right_down = (
+                near_cos_q6_q1_for_q3_right_down * r12 + near_sin_q6_q1_for_q3_right_down * r11
+            )
+            near_p_q1_for_q3_right_down = (
+                -near_cos_q6_q1_for_q3_right_down * r22 - near_sin_q6_q1_for_q3_right_down * r21
+            )
             near_radius_q1_for_q3_right_down = sqrt(
-                near_p_q1_for_q3_right_down*near_p_q1_for_q3_right_down
-                + near_q_q1_for_q3_right_down*near_q_q1_for_q3_right_down
+                near_p_q1_for_q3_right_down * near_p_q1_for_q3_right_down
+                + near_q_q1_for_q3_right_down * near_q_q1_for_q3_right_down
             )
 
             def elsewhere_near_cos_q1_for_q3_right_down(
-                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
+                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real
             ) -> Reals:
                 near_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows
-                near_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                near_sin_q1_for_q3_right_down = (
+                    sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                )
                 return (near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down)
 
             near_along_q1_for_q3_right_down = (
-                (near_cos_q6_q1_for_q3_right_down*r21 - near_sin_q6_q1_for_q3_right_down*r22)*near_q_q1_for_q3_right_down
-                - (
-                    near_sin_q6_q1_for_q3_right_down*r12 - near_cos_q6_q1_for_q3_right_down*r11
-                )*near_p_q1_for_q3_right_down
-            )
+                near_cos_q6_q1_for_q3_right_down * r21 - near_sin_q6_q1_for_q3_right_down * r22
+            ) * near_q_q1_for_q3_right_down - (
+                near_sin_q6_q1_for_q3_right_down * r12 - near_cos_q6_q1_for_q3_right_down * r11
+            ) * near_p_q1_for_q3_right_down
             # of two opposite ways
             near_towards_q1_for_q3_right_down = select(
-                absolute(near_along_q1_for_q3_right_down) <= 5e-12*near_radius_q1_for_q3_right_down,
-                (
-                    near_p_q1_for_q3_right_down*sin_q1_before_q1_for_q3_right
-                    - near_q_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right
-                ),
+                absolute(near_along_q1_for_q3_right_down) <= 5e-12 * near_radius_q1_for_q3_right_down,
+                near_p_q1_for_q3_right_down * sin_q1_before_q1_for_q3_right
+                - near_q_q1_for_q3_right_down * cos_q1_before_q1_for_q3_right,
                 near_along_q1_for_q3_right_down,
             )
             near_side_q1_for_q3_right_down = select(near_towards_q1_for_q3_right_down < 0.0, -1.0, 1.0)
-            part_of_near_cos_q1_for_q3_right_down = near_side_q1_for_q3_right_down/near_radius_q1_for_q3_right_down
+            part_of_near_cos_q1_for_q3_right_down = near_side_q1_for_q3_right_down / near_radius_q1_for_q3_right_down
             # the earlier angle follows
-            near_cos_q1_for_q3_right_down = -near_q_q1_for_q3_right_down*part_of_near_cos_q1_for_q3_right_down
+            near_cos_q1_for_q3_right_down = -near_q_q1_for_q3_right_down * part_of_near_cos_q1_for_q3_right_down
             # it stays where every angle gives this one
-            near_sin_q1_for_q3_right_down = near_p_q1_for_q3_right_down*part_of_near_cos_q1_for_q3_right_down
+            near_sin_q1_for_q3_right_down = near_p_q1_for_q3_right_down * part_of_near_cos_q1_for_q3_right_down
             near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down = elsewhere(
                 near_radius_q1_for_q3_right_down > 1e-12,
                 (near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down),
@@ -1617,64 +1765,61 @@ class ArrayPrograms(Programs):
                 (cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right),
             )
             near_q6_q1_for_q3_right_up = atan2(
-                root((1.0 - highest_q6_q1_for_q3_right_up)*(1.0 + highest_q6_q1_for_q3_right_up)),
+                root((1.0 - highest_q6_q1_for_q3_right_up) * (1.0 + highest_q6_q1_for_q3_right_up)),
                 highest_q6_q1_for_q3_right_up,
             )
             far_q6_q1_for_q3_right_up = atan2(
-                root((1.0 - lowest_q6_q1_for_q3_right_up)*(1.0 + lowest_q6_q1_for_q3_right_up)),
+                root((1.0 - lowest_q6_q1_for_q3_right_up) * (1.0 + lowest_q6_q1_for_q3_right_up)),
                 lowest_q6_q1_for_q3_right_up,
             )
             angle_q6_q1_for_q3_right_up = atan2(sin_q6_before_q1_for_q3_right_up, cos_q6_before_q1_for_q3_right_up)
             side_q6_q1_for_q3_right_up = select(
-                (
-                    along_q6_q1_for_q3_right*sin_q6_before_q1_for_q3_right_up
-                    - across_q6_q1_for_q3_right*cos_q6_before_q1_for_q3_right_up >= 0.0
-                ),
+                along_q6_q1_for_q3_right * sin_q6_before_q1_for_q3_right_up
+                - across_q6_q1_for_q3_right * cos_q6_before_q1_for_q3_right_up
+                >= 0.0,
                 1.0,
                 -1.0,
             )
             moved_q6_q1_for_q3_right_up = nearest_on_arc(
                 angle_q6_q1_for_q3_right_up,
-                (
-                    centre_q6_q1_for_q3_right
-                    + 0.5*(far_q6_q1_for_q3_right_up + near_q6_q1_for_q3_right_up)*side_q6_q1_for_q3_right_up
-                ),
-                0.5*far_q6_q1_for_q3_right_up - 0.5*near_q6_q1_for_q3_right_up,
+                centre_q6_q1_for_q3_right
+                + 0.5 * (far_q6_q1_for_q3_right_up + near_q6_q1_for_q3_right_up) * side_q6_q1_for_q3_right_up,
+                0.5 * far_q6_q1_for_q3_right_up - 0.5 * near_q6_q1_for_q3_right_up,
             )
             near_cos_q6_q1_for_q3_right_up = cos(moved_q6_q1_for_q3_right_up)
             near_sin_q6_q1_for_q3_right_up = sin(moved_q6_q1_for_q3_right_up)
-            near_q_q1_for_q3_right_up = -near_cos_q6_q1_for_q3_right_up*r12 - near_sin_q6_q1_for_q3_right_up*r11
-            near_p_q1_for_q3_right_up = near_cos_q6_q1_for_q3_right_up*r22 + near_sin_q6_q1_for_q3_right_up*r21
+            near_q_q1_for_q3_right_up = -near_cos_q6_q1_for_q3_right_up * r12 - near_sin_q6_q1_for_q3_right_up * r11
+            near_p_q1_for_q3_right_up = near_cos_q6_q1_for_q3_right_up * r22 + near_sin_q6_q1_for_q3_right_up * r21
             near_radius_q1_for_q3_right_up = sqrt(
-                near_p_q1_for_q3_right_up*near_p_q1_for_q3_right_up + near_q_q1_for_q3_right_up*near_q_q1_for_q3_right_up
+                near_p_q1_for_q3_right_up * near_p_q1_for_q3_right_up
+                + near_q_q1_for_q3_right_up * near_q_q1_for_q3_right_up
             )
 
             def elsewhere_near_cos_q1_for_q3_right_up(
-                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
+                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real
             ) -> Reals:
                 near_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows
                 near_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
                 return (near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up)
 
             near_along_q1_for_q3_right_up = (
-                (near_sin_q6_q1_for_q3_right_up*r12 - near_cos_q6_q1_for_q3_right_up*r11)*near_p_q1_for_q3_right_up
-                - (near_cos_q6_q1_for_q3_right_up*r21 - near_sin_q6_q1_for_q3_right_up*r22)*near_q_q1_for_q3_right_up
-            )
+                near_sin_q6_q1_for_q3_right_up * r12 - near_cos_q6_q1_for_q3_right_up * r11
+            ) * near_p_q1_for_q3_right_up - (
+                near_cos_q6_q1_for_q3_right_up * r21 - near_sin_q6_q1_for_q3_right_up * r22
+            ) * near_q_q1_for_q3_right_up
             # of two opposite ways
             near_towards_q1_for_q3_right_up = select(
-                absolute(near_along_q1_for_q3_right_up) <= 5e-12*near_radius_q1_for_q3_right_up,
-                (
-                    near_p_q1_for_q3_right_up*sin_q1_before_q1_for_q3_right
-                    - near_q_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right
-                ),
+                absolute(near_along_q1_for_q3_right_up) <= 5e-12 * near_radius_q1_for_q3_right_up,
+                near_p_q1_for_q3_right_up * sin_q1_before_q1_for_q3_right
+                - near_q_q1_for_q3_right_up * cos_q1_before_q1_for_q3_right,
                 near_along_q1_for_q3_right_up,
             )
             near_side_q1_for_q3_right_up = select(near_towards_q1_for_q3_right_up < 0.0, -1.0, 1.0)
-            part_of_near_cos_q1_for_q3_right_up = near_side_q1_for_q3_right_up/near_radius_q1_for_q3_right_up
+            part_of_near_cos_q1_for_q3_right_up = near_side_q1_for_q3_right_up / near_radius_q1_for_q3_right_up
             # the earlier angle follows
-            near_cos_q1_for_q3_right_up = -near_q_q1_for_q3_right_up*part_of_near_cos_q1_for_q3_right_up
+            near_cos_q1_for_q3_right_up = -near_q_q1_for_q3_right_up * part_of_near_cos_q1_for_q3_right_up
             # it stays where every angle gives this one
-            near_sin_q1_for_q3_right_up = near_p_q1_for_q3_right_up*part_of_near_cos_q1_for_q3_right_up
+            near_sin_q1_for_q3_right_up = near_p_q1_for_q3_right_up * part_of_near_cos_q1_for_q3_right_up
             near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up = elsewhere(
                 near_radius_q1_for_q3_right_up > 1e-12,
                 (near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up),
@@ -1683,9 +1828,14 @@ class ArrayPrograms(Programs):
             )
 
             def elsewhere_swept_cost_q1_for_q3_left_down_2(
-                near_cos_q1_for_q3_left_down: Real, near_cos_q1_for_q3_left_up: Real, near_cos_q1_for_q3_right_down: Real,
-                near_cos_q1_for_q3_right_up: Real, near_sin_q1_for_q3_left_down: Real, near_sin_q1_for_q3_left_up: Real,
-                near_sin_q1_for_q3_right_down: Real, near_sin_q1_for_q3_right_up: Real,
+                near_cos_q1_for_q3_left_down: Real,
+                near_cos_q1_for_q3_left_up: Real,
+                near_cos_q1_for_q3_right_down: Real,
+                near_cos_q1_for_q3_right_up: Real,
+                near_sin_q1_for_q3_left_down: Real,
+                near_sin_q1_for_q3_left_up: Real,
+                near_sin_q1_for_q3_right_down: Real,
+                near_sin_q1_for_q3_right_up: Real,
             ) -> Reals:
                 swept_cost_q1_for_q3_left_down = 0.0
                 swept_cos_q1_for_q3_left_down = near_cos_q1_for_q3_left_down
@@ -1700,62 +1850,69 @@ class ArrayPrograms(Programs):
                 swept_cos_q1_for_q3_right_up = near_cos_q1_for_q3_right_up
                 swept_sin_q1_for_q3_right_up = near_sin_q1_for_q3_right_up
                 return (
-                    swept_cost_q1_for_q3_left_down, swept_cos_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down,
-                    swept_cost_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up,
-                    swept_cost_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down,
-                    swept_cost_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up, swept_sin_q1_for_q3_right_up,
+                    swept_cost_q1_for_q3_left_down,
+                    swept_cos_q1_for_q3_left_down,
+                    swept_sin_q1_for_q3_left_down,
+                    swept_cost_q1_for_q3_left_up,
+                    swept_cos_q1_for_q3_left_up,
+                    swept_sin_q1_for_q3_left_up,
+                    swept_cost_q1_for_q3_right_down,
+                    swept_cos_q1_for_q3_right_down,
+                    swept_sin_q1_for_q3_right_down,
+                    swept_cost_q1_for_q3_right_up,
+                    swept_cos_q1_for_q3_right_up,
+                    swept_sin_q1_for_q3_right_up,
                 )
 
             near_cost_q1_for_q3_left_down = absolute(
-                d4 + near_cos_q1_for_q3_left_down*wrist_y - near_sin_q1_for_q3_left_down*wrist_x
+                d4 + near_cos_q1_for_q3_left_down * wrist_y - near_sin_q1_for_q3_left_down * wrist_x
             )
             # the other way to the arc
-            mirrored_q6_q1_for_q3_left_down = 2.0*centre_q6_q1_for_q3_left - moved_q6_q1_for_q3_left_down
+            mirrored_q6_q1_for_q3_left_down = 2.0 * centre_q6_q1_for_q3_left - moved_q6_q1_for_q3_left_down
             mirrored_cos_q6_q1_for_q3_left_down = cos(mirrored_q6_q1_for_q3_left_down)
             mirrored_sin_q6_q1_for_q3_left_down = sin(mirrored_q6_q1_for_q3_left_down)
             mirrored_q_q1_for_q3_left_down = (
-                mirrored_cos_q6_q1_for_q3_left_down*r12 + mirrored_sin_q6_q1_for_q3_left_down*r11
+                mirrored_cos_q6_q1_for_q3_left_down * r12 + mirrored_sin_q6_q1_for_q3_left_down * r11
             )
             mirrored_p_q1_for_q3_left_down = (
-                -mirrored_cos_q6_q1_for_q3_left_down*r22 - mirrored_sin_q6_q1_for_q3_left_down*r21
+                -mirrored_cos_q6_q1_for_q3_left_down * r22 - mirrored_sin_q6_q1_for_q3_left_down * r21
             )
             mirrored_radius_q1_for_q3_left_down = sqrt(
-                mirrored_p_q1_for_q3_left_down*mirrored_p_q1_for_q3_left_down
-                + mirrored_q_q1_for_q3_left_down*mirrored_q_q1_for_q3_left_down
+                mirrored_p_q1_for_q3_left_down * mirrored_p_q1_for_q3_left_down
+                + mirrored_q_q1_for_q3_left_down * mirrored_q_q1_for_q3_left_down
             )
 
             def elsewhere_mirrored_cos_q1_for_q3_left_down(
-                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
+                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real
             ) -> Reals:
                 mirrored_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows
-                mirrored_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                mirrored_sin_q1_for_q3_left_down = (
+                    sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                )
                 return (mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down)
 
             mirrored_along_q1_for_q3_left_down = (
-                (
-                    mirrored_cos_q6_q1_for_q3_left_down*r21 - mirrored_sin_q6_q1_for_q3_left_down*r22
-                )*mirrored_q_q1_for_q3_left_down
-                - (
-                    mirrored_sin_q6_q1_for_q3_left_down*r12 - mirrored_cos_q6_q1_for_q3_left_down*r11
-                )*mirrored_p_q1_for_q3_left_down
-            )
+                mirrored_cos_q6_q1_for_q3_left_down * r21 - mirrored_sin_q6_q1_for_q3_left_down * r22
+            ) * mirrored_q_q1_for_q3_left_down - (
+                mirrored_sin_q6_q1_for_q3_left_down * r12 - mirrored_cos_q6_q1_for_q3_left_down * r11
+            ) * mirrored_p_q1_for_q3_left_down
             # of two opposite ways
             mirrored_towards_q1_for_q3_left_down = select(
-                absolute(mirrored_along_q1_for_q3_left_down) <= 5e-12*mirrored_radius_q1_for_q3_left_down,
-                (
-                    mirrored_p_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left
-                    - mirrored_q_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left
-                ),
+                absolute(mirrored_along_q1_for_q3_left_down) <= 5e-12 * mirrored_radius_q1_for_q3_left_down,
+                mirrored_p_q1_for_q3_left_down * sin_q1_before_q1_for_q3_left
+                - mirrored_q_q1_for_q3_left_down * cos_q1_before_q1_for_q3_left,
                 mirrored_along_q1_for_q3_left_down,
             )
             mirrored_side_q1_for_q3_left_down = select(mirrored_towards_q1_for_q3_left_down < 0.0, -1.0, 1.0)
             part_of_mirrored_cos_q1_for_q3_left_down = (
-                mirrored_side_q1_for_q3_left_down/mirrored_radius_q1_for_q3_left_down
+                mirrored_side_q1_for_q3_left_down / mirrored_radius_q1_for_q3_left_down
             )
             # the earlier angle follows
-            mirrored_cos_q1_for_q3_left_down = -mirrored_q_q1_for_q3_left_down*part_of_mirrored_cos_q1_for_q3_left_down
+            mirrored_cos_q1_for_q3_left_down = (
+                -mirrored_q_q1_for_q3_left_down * part_of_mirrored_cos_q1_for_q3_left_down
+            )
             # it stays where every angle gives this one
-            mirrored_sin_q1_for_q3_left_down = mirrored_p_q1_for_q3_left_down*part_of_mirrored_cos_q1_for_q3_left_down
+            mirrored_sin_q1_for_q3_left_down = mirrored_p_q1_for_q3_left_down * part_of_mirrored_cos_q1_for_q3_left_down
             mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down = elsewhere(
                 mirrored_radius_q1_for_q3_left_down > 1e-12,
                 (mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down),
@@ -1763,11 +1920,12 @@ class ArrayPrograms(Programs):
                 (cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left),
             )
             mirrored_cost_q1_for_q3_left_down = absolute(
-                d4 + mirrored_cos_q1_for_q3_left_down*wrist_y - mirrored_sin_q1_for_q3_left_down*wrist_x
+                d4 + mirrored_cos_q1_for_q3_left_down * wrist_y - mirrored_sin_q1_for_q3_left_down * wrist_x
             )
 
             def elsewhere_swept_cost_q1_for_q3_left_down(
-                mirrored_cos_q1_for_q3_left_down: Real, mirrored_cost_q1_for_q3_left_down: Real,
+                mirrored_cos_q1_for_q3_left_down: Real,
+                mirrored_cost_q1_for_q3_left_down: Real,
                 mirrored_sin_q1_for_q3_left_down: Real,
             ) -> Reals:
                 swept_cost_q1_for_q3_left_down = mirrored_cost_q1_for_q3_left_down
@@ -1785,49 +1943,50 @@ class ArrayPrograms(Programs):
                 (mirrored_cos_q1_for_q3_left_down, mirrored_cost_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down),
             )
             near_cost_q1_for_q3_left_up = absolute(
-                d4 + near_cos_q1_for_q3_left_up*wrist_y - near_sin_q1_for_q3_left_up*wrist_x
+                d4 + near_cos_q1_for_q3_left_up * wrist_y - near_sin_q1_for_q3_left_up * wrist_x
             )
             # the other way to the arc
-            mirrored_q6_q1_for_q3_left_up = 2.0*centre_q6_q1_for_q3_left - moved_q6_q1_for_q3_left_up
+            mirrored_q6_q1_for_q3_left_up = 2.0 * centre_q6_q1_for_q3_left - moved_q6_q1_for_q3_left_up
             mirrored_cos_q6_q1_for_q3_left_up = cos(mirrored_q6_q1_for_q3_left_up)
             mirrored_sin_q6_q1_for_q3_left_up = sin(mirrored_q6_q1_for_q3_left_up)
-            mirrored_q_q1_for_q3_left_up = -mirrored_cos_q6_q1_for_q3_left_up*r12 - mirrored_sin_q6_q1_for_q3_left_up*r11
-            mirrored_p_q1_for_q3_left_up = mirrored_cos_q6_q1_for_q3_left_up*r22 + mirrored_sin_q6_q1_for_q3_left_up*r21
+            mirrored_q_q1_for_q3_left_up = (
+                -mirrored_cos_q6_q1_for_q3_left_up * r12 - mirrored_sin_q6_q1_for_q3_left_up * r11
+            )
+            mirrored_p_q1_for_q3_left_up = (
+                mirrored_cos_q6_q1_for_q3_left_up * r22 + mirrored_sin_q6_q1_for_q3_left_up * r21
+            )
             mirrored_radius_q1_for_q3_left_up = sqrt(
-                mirrored_p_q1_for_q3_left_up*mirrored_p_q1_for_q3_left_up
-                + mirrored_q_q1_for_q3_left_up*mirrored_q_q1_for_q3_left_up
+                mirrored_p_q1_for_q3_left_up * mirrored_p_q1_for_q3_left_up
+                + mirrored_q_q1_for_q3_left_up * mirrored_q_q1_for_q3_left_up
             )
 
             def elsewhere_mirrored_cos_q1_for_q3_left_up(
-                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
+                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real
             ) -> Reals:
                 mirrored_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows
-                mirrored_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                mirrored_sin_q1_for_q3_left_up = (
+                    sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                )
                 return (mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up)
 
             mirrored_along_q1_for_q3_left_up = (
-                (
-                    mirrored_sin_q6_q1_for_q3_left_up*r12 - mirrored_cos_q6_q1_for_q3_left_up*r11
-                )*mirrored_p_q1_for_q3_left_up
-                - (
-                    mirrored_cos_q6_q1_for_q3_left_up*r21 - mirrored_sin_q6_q1_for_q3_left_up*r22
-                )*mirrored_q_q1_for_q3_left_up
-            )
+                mirrored_sin_q6_q1_for_q3_left_up * r12 - mirrored_cos_q6_q1_for_q3_left_up * r11
+            ) * mirrored_p_q1_for_q3_left_up - (
+                mirrored_cos_q6_q1_for_q3_left_up * r21 - mirrored_sin_q6_q1_for_q3_left_up * r22
+            ) * mirrored_q_q1_for_q3_left_up
             # of two opposite ways
             mirrored_towards_q1_for_q3_left_up = select(
-                absolute(mirrored_along_q1_for_q3_left_up) <= 5e-12*mirrored_radius_q1_for_q3_left_up,
-                (
-                    mirrored_p_q1_for_q3_left_up*sin_q1_before_q1_for_q3_left
-                    - mirrored_q_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left
-                ),
+                absolute(mirrored_along_q1_for_q3_left_up) <= 5e-12 * mirrored_radius_q1_for_q3_left_up,
+                mirrored_p_q1_for_q3_left_up * sin_q1_before_q1_for_q3_left
+                - mirrored_q_q1_for_q3_left_up * cos_q1_before_q1_for_q3_left,
                 mirrored_along_q1_for_q3_left_up,
             )
             mirrored_side_q1_for_q3_left_up = select(mirrored_towards_q1_for_q3_left_up < 0.0, -1.0, 1.0)
-            part_of_mirrored_cos_q1_for_q3_left_up = mirrored_side_q1_for_q3_left_up/mirrored_radius_q1_for_q3_left_up
+            part_of_mirrored_cos_q1_for_q3_left_up = mirrored_side_q1_for_q3_left_up / mirrored_radius_q1_for_q3_left_up
             # the earlier angle follows
-            mirrored_cos_q1_for_q3_left_up = -mirrored_q_q1_for_q3_left_up*part_of_mirrored_cos_q1_for_q3_left_up
+            mirrored_cos_q1_for_q3_left_up = -mirrored_q_q1_for_q3_left_up * part_of_mirrored_cos_q1_for_q3_left_up
             # it stays where every angle gives this one
-            mirrored_sin_q1_for_q3_left_up = mirrored_p_q1_for_q3_left_up*part_of_mirrored_cos_q1_for_q3_left_up
+            mirrored_sin_q1_for_q3_left_up = mirrored_p_q1_for_q3_left_up * part_of_mirrored_cos_q1_for_q3_left_up
             mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up = elsewhere(
                 mirrored_radius_q1_for_q3_left_up > 1e-12,
                 (mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up),
@@ -1835,11 +1994,12 @@ class ArrayPrograms(Programs):
                 (cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left),
             )
             mirrored_cost_q1_for_q3_left_up = absolute(
-                d4 + mirrored_cos_q1_for_q3_left_up*wrist_y - mirrored_sin_q1_for_q3_left_up*wrist_x
+                d4 + mirrored_cos_q1_for_q3_left_up * wrist_y - mirrored_sin_q1_for_q3_left_up * wrist_x
             )
 
             def elsewhere_swept_cost_q1_for_q3_left_up(
-                mirrored_cos_q1_for_q3_left_up: Real, mirrored_cost_q1_for_q3_left_up: Real,
+                mirrored_cos_q1_for_q3_left_up: Real,
+                mirrored_cost_q1_for_q3_left_up: Real,
                 mirrored_sin_q1_for_q3_left_up: Real,
             ) -> Reals:
                 swept_cost_q1_for_q3_left_up = mirrored_cost_q1_for_q3_left_up
@@ -1857,55 +2017,55 @@ class ArrayPrograms(Programs):
                 (mirrored_cos_q1_for_q3_left_up, mirrored_cost_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up),
             )
             near_cost_q1_for_q3_right_down = absolute(
-                d4 + near_cos_q1_for_q3_right_down*wrist_y - near_sin_q1_for_q3_right_down*wrist_x
+                d4 + near_cos_q1_for_q3_right_down * wrist_y - near_sin_q1_for_q3_right_down * wrist_x
             )
             # the other way to the arc
-            mirrored_q6_q1_for_q3_right_down = 2.0*centre_q6_q1_for_q3_right - moved_q6_q1_for_q3_right_down
+            mirrored_q6_q1_for_q3_right_down = 2.0 * centre_q6_q1_for_q3_right - moved_q6_q1_for_q3_right_down
             mirrored_cos_q6_q1_for_q3_right_down = cos(mirrored_q6_q1_for_q3_right_down)
             mirrored_sin_q6_q1_for_q3_right_down = sin(mirrored_q6_q1_for_q3_right_down)
             mirrored_q_q1_for_q3_right_down = (
-                mirrored_cos_q6_q1_for_q3_right_down*r12 + mirrored_sin_q6_q1_for_q3_right_down*r11
+                mirrored_cos_q6_q1_for_q3_right_down * r12 + mirrored_sin_q6_q1_for_q3_right_down * r11
             )
             mirrored_p_q1_for_q3_right_down = (
-                -mirrored_cos_q6_q1_for_q3_right_down*r22 - mirrored_sin_q6_q1_for_q3_right_down*r21
+                -mirrored_cos_q6_q1_for_q3_right_down * r22 - mirrored_sin_q6_q1_for_q3_right_down * r21
             )
             mirrored_radius_q1_for_q3_right_down = sqrt(
-                mirrored_p_q1_for_q3_right_down*mirrored_p_q1_for_q3_right_down
-                + mirrored_q_q1_for_q3_right_down*mirrored_q_q1_for_q3_right_down
+                mirrored_p_q1_for_q3_right_down * mirrored_p_q1_for_q3_right_down
+                + mirrored_q_q1_for_q3_right_down * mirrored_q_q1_for_q3_right_down
             )
 
             def elsewhere_mirrored_cos_q1_for_q3_right_down(
-                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
+                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real
             ) -> Reals:
                 mirrored_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows
-                mirrored_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                # it stays where every angle gives this one
+                mirrored_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right
                 return (mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down)
 
             mirrored_along_q1_for_q3_right_down = (
-                (
-                    mirrored_cos_q6_q1_for_q3_right_down*r21 - mirrored_sin_q6_q1_for_q3_right_down*r22
-                )*mirrored_q_q1_for_q3_right_down
-                - (
-                    mirrored_sin_q6_q1_for_q3_right_down*r12 - mirrored_cos_q6_q1_for_q3_right_down*r11
-                )*mirrored_p_q1_for_q3_right_down
-            )
+                mirrored_cos_q6_q1_for_q3_right_down * r21 - mirrored_sin_q6_q1_for_q3_right_down * r22
+            ) * mirrored_q_q1_for_q3_right_down - (
+                mirrored_sin_q6_q1_for_q3_right_down * r12 - mirrored_cos_q6_q1_for_q3_right_down * r11
+            ) * mirrored_p_q1_for_q3_right_down
             # of two opposite ways
             mirrored_towards_q1_for_q3_right_down = select(
-                absolute(mirrored_along_q1_for_q3_right_down) <= 5e-12*mirrored_radius_q1_for_q3_right_down,
-                (
-                    mirrored_p_q1_for_q3_right_down*sin_q1_before_q1_for_q3_right
-                    - mirrored_q_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right
-                ),
+                absolute(mirrored_along_q1_for_q3_right_down) <= 5e-12 * mirrored_radius_q1_for_q3_right_down,
+                mirrored_p_q1_for_q3_right_down * sin_q1_before_q1_for_q3_right
+                - mirrored_q_q1_for_q3_right_down * cos_q1_before_q1_for_q3_right,
                 mirrored_along_q1_for_q3_right_down,
             )
             mirrored_side_q1_for_q3_right_down = select(mirrored_towards_q1_for_q3_right_down < 0.0, -1.0, 1.0)
             part_of_mirrored_cos_q1_for_q3_right_down = (
-                mirrored_side_q1_for_q3_right_down/mirrored_radius_q1_for_q3_right_down
+                mirrored_side_q1_for_q3_right_down / mirrored_radius_q1_for_q3_right_down
             )
             # the earlier angle follows
-            mirrored_cos_q1_for_q3_right_down = -mirrored_q_q1_for_q3_right_down*part_of_mirrored_cos_q1_for_q3_right_down
+            mirrored_cos_q1_for_q3_right_down = (
+                -mirrored_q_q1_for_q3_right_down * part_of_mirrored_cos_q1_for_q3_right_down
+            )
             # it stays where every angle gives this one
-            mirrored_sin_q1_for_q3_right_down = mirrored_p_q1_for_q3_right_down*part_of_mirrored_cos_q1_for_q3_right_down
+            mirrored_sin_q1_for_q3_right_down = (
+                mirrored_p_q1_for_q3_right_down * part_of_mirrored_cos_q1_for_q3_right_down
+            )
             mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down = elsewhere(
                 mirrored_radius_q1_for_q3_right_down > 1e-12,
                 (mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down),
@@ -1913,11 +2073,12 @@ class ArrayPrograms(Programs):
                 (cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right),
             )
             mirrored_cost_q1_for_q3_right_down = absolute(
-                d4 + mirrored_cos_q1_for_q3_right_down*wrist_y - mirrored_sin_q1_for_q3_right_down*wrist_x
+                d4 + mirrored_cos_q1_for_q3_right_down * wrist_y - mirrored_sin_q1_for_q3_right_down * wrist_x
             )
 
             def elsewhere_swept_cost_q1_for_q3_right_down(
-                mirrored_cos_q1_for_q3_right_down: Real, mirrored_cost_q1_for_q3_right_down: Real,
+                mirrored_cos_q1_for_q3_right_down: Real,
+                mirrored_cost_q1_for_q3_right_down: Real,
                 mirrored_sin_q1_for_q3_right_down: Real,
             ) -> Reals:
                 swept_cost_q1_for_q3_right_down = mirrored_cost_q1_for_q3_right_down
@@ -1933,58 +2094,58 @@ class ArrayPrograms(Programs):
                 (swept_cost_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down),
                 elsewhere_swept_cost_q1_for_q3_right_down,
                 (
-                    mirrored_cos_q1_for_q3_right_down, mirrored_cost_q1_for_q3_right_down,
+                    mirrored_cos_q1_for_q3_right_down,
+                    mirrored_cost_q1_for_q3_right_down,
                     mirrored_sin_q1_for_q3_right_down,
                 ),
             )
             near_cost_q1_for_q3_right_up = absolute(
-                d4 + near_cos_q1_for_q3_right_up*wrist_y - near_sin_q1_for_q3_right_up*wrist_x
+                d4 + near_cos_q1_for_q3_right_up * wrist_y - near_sin_q1_for_q3_right_up * wrist_x
             )
             # the other way to the arc
-            mirrored_q6_q1_for_q3_right_up = 2.0*centre_q6_q1_for_q3_right - moved_q6_q1_for_q3_right_up
+            mirrored_q6_q1_for_q3_right_up = 2.0 * centre_q6_q1_for_q3_right - moved_q6_q1_for_q3_right_up
             mirrored_cos_q6_q1_for_q3_right_up = cos(mirrored_q6_q1_for_q3_right_up)
             mirrored_sin_q6_q1_for_q3_right_up = sin(mirrored_q6_q1_for_q3_right_up)
             mirrored_q_q1_for_q3_right_up = (
-                -mirrored_cos_q6_q1_for_q3_right_up*r12 - mirrored_sin_q6_q1_for_q3_right_up*r11
+                -mirrored_cos_q6_q1_for_q3_right_up * r12 - mirrored_sin_q6_q1_for_q3_right_up * r11
             )
             mirrored_p_q1_for_q3_right_up = (
-                mirrored_cos_q6_q1_for_q3_right_up*r22 + mirrored_sin_q6_q1_for_q3_right_up*r21
+                mirrored_cos_q6_q1_for_q3_right_up * r22 + mirrored_sin_q6_q1_for_q3_right_up * r21
             )
             mirrored_radius_q1_for_q3_right_up = sqrt(
-                mirrored_p_q1_for_q3_right_up*mirrored_p_q1_for_q3_right_up
-                + mirrored_q_q1_for_q3_right_up*mirrored_q_q1_for_q3_right_up
+                mirrored_p_q1_for_q3_right_up * mirrored_p_q1_for_q3_right_up
+                + mirrored_q_q1_for_q3_right_up * mirrored_q_q1_for_q3_right_up
             )
 
             def elsewhere_mirrored_cos_q1_for_q3_right_up(
-                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
+                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real
             ) -> Reals:
                 mirrored_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows
-                mirrored_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                mirrored_sin_q1_for_q3_right_up = (
+                    sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                )
                 return (mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up)
 
             mirrored_along_q1_for_q3_right_up = (
-                (
-                    mirrored_sin_q6_q1_for_q3_right_up*r12 - mirrored_cos_q6_q1_for_q3_right_up*r11
-                )*mirrored_p_q1_for_q3_right_up
-                - (
-                    mirrored_cos_q6_q1_for_q3_right_up*r21 - mirrored_sin_q6_q1_for_q3_right_up*r22
-                )*mirrored_q_q1_for_q3_right_up
-            )
+                mirrored_sin_q6_q1_for_q3_right_up * r12 - mirrored_cos_q6_q1_for_q3_right_up * r11
+            ) * mirrored_p_q1_for_q3_right_up - (
+                mirrored_cos_q6_q1_for_q3_right_up * r21 - mirrored_sin_q6_q1_for_q3_right_up * r22
+            ) * mirrored_q_q1_for_q3_right_up
             # of two opposite ways
             mirrored_towards_q1_for_q3_right_up = select(
-                absolute(mirrored_along_q1_for_q3_right_up) <= 5e-12*mirrored_radius_q1_for_q3_right_up,
-                (
-                    mirrored_p_q1_for_q3_right_up*sin_q1_before_q1_for_q3_right
-                    - mirrored_q_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right
-                ),
+                absolute(mirrored_along_q1_for_q3_right_up) <= 5e-12 * mirrored_radius_q1_for_q3_right_up,
+                mirrored_p_q1_for_q3_right_up * sin_q1_before_q1_for_q3_right
+                - mirrored_q_q1_for_q3_right_up * cos_q1_before_q1_for_q3_right,
                 mirrored_along_q1_for_q3_right_up,
             )
             mirrored_side_q1_for_q3_right_up = select(mirrored_towards_q1_for_q3_right_up < 0.0, -1.0, 1.0)
-            part_of_mirrored_cos_q1_for_q3_right_up = mirrored_side_q1_for_q3_right_up/mirrored_radius_q1_for_q3_right_up
+            part_of_mirrored_cos_q1_for_q3_right_up = (
+                mirrored_side_q1_for_q3_right_up / mirrored_radius_q1_for_q3_right_up
+            )
             # the earlier angle follows
-            mirrored_cos_q1_for_q3_right_up = -mirrored_q_q1_for_q3_right_up*part_of_mirrored_cos_q1_for_q3_right_up
+            mirrored_cos_q1_for_q3_right_up = -mirrored_q_q1_for_q3_right_up * part_of_mirrored_cos_q1_for_q3_right_up
             # it stays where every angle gives this one
-            mirrored_sin_q1_for_q3_right_up = mirrored_p_q1_for_q3_right_up*part_of_mirrored_cos_q1_for_q3_right_up
+            mirrored_sin_q1_for_q3_right_up = mirrored_p_q1_for_q3_right_up * part_of_mirrored_cos_q1_for_q3_right_up
             mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up = elsewhere(
                 mirrored_radius_q1_for_q3_right_up > 1e-12,
                 (mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up),
@@ -1992,11 +2153,12 @@ class ArrayPrograms(Programs):
                 (cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right),
             )
             mirrored_cost_q1_for_q3_right_up = absolute(
-                d4 + mirrored_cos_q1_for_q3_right_up*wrist_y - mirrored_sin_q1_for_q3_right_up*wrist_x
+                d4 + mirrored_cos_q1_for_q3_right_up * wrist_y - mirrored_sin_q1_for_q3_right_up * wrist_x
             )
 
             def elsewhere_swept_cost_q1_for_q3_right_up(
-                mirrored_cos_q1_for_q3_right_up: Real, mirrored_cost_q1_for_q3_right_up: Real,
+                mirrored_cos_q1_for_q3_right_up: Real,
+                mirrored_cost_q1_for_q3_right_up: Real,
                 mirrored_sin_q1_for_q3_right_up: Real,
             ) -> Reals:
                 swept_cost_q1_for_q3_right_up = mirrored_cost_q1_for_q3_right_up
@@ -2013,89 +2175,136 @@ class ArrayPrograms(Programs):
                 elsewhere_swept_cost_q1_for_q3_right_up,
                 (mirrored_cos_q1_for_q3_right_up, mirrored_cost_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up),
             )
-            found = elsewhere(
+            (
+                swept_cost_q1_for_q3_left_down,
+                swept_cos_q1_for_q3_left_down,
+                swept_sin_q1_for_q3_left_down,
+                swept_cost_q1_for_q3_left_up,
+                swept_cos_q1_for_q3_left_up,
+                swept_sin_q1_for_q3_left_up,
+                swept_cost_q1_for_q3_right_down,
+                swept_cos_q1_for_q3_right_down,
+                swept_sin_q1_for_q3_right_down,
+                swept_cost_q1_for_q3_right_up,
+                swept_cos_q1_for_q3_right_up,
+                swept_sin_q1_for_q3_right_up,
+            ) = elsewhere(
                 distance_q1 > machine_scale_times_free_angle,
                 (
-                    swept_cost_q1_for_q3_left_down, swept_cos_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down,
-                    swept_cost_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up,
-                    swept_cost_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down,
-                    swept_cost_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up, swept_sin_q1_for_q3_right_up,
+                    swept_cost_q1_for_q3_left_down,
+                    swept_cos_q1_for_q3_left_down,
+                    swept_sin_q1_for_q3_left_down,
+                    swept_cost_q1_for_q3_left_up,
+                    swept_cos_q1_for_q3_left_up,
+                    swept_sin_q1_for_q3_left_up,
+                    swept_cost_q1_for_q3_right_down,
+                    swept_cos_q1_for_q3_right_down,
+                    swept_sin_q1_for_q3_right_down,
+                    swept_cost_q1_for_q3_right_up,
+                    swept_cos_q1_for_q3_right_up,
+                    swept_sin_q1_for_q3_right_up,
                 ),
                 elsewhere_swept_cost_q1_for_q3_left_down_2,
                 (
-                    near_cos_q1_for_q3_left_down, near_cos_q1_for_q3_left_up, near_cos_q1_for_q3_right_down,
-                    near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_left_down, near_sin_q1_for_q3_left_up,
-                    near_sin_q1_for_q3_right_down, near_sin_q1_for_q3_right_up,
+                    near_cos_q1_for_q3_left_down,
+                    near_cos_q1_for_q3_left_up,
+                    near_cos_q1_for_q3_right_down,
+                    near_cos_q1_for_q3_right_up,
+                    near_sin_q1_for_q3_left_down,
+                    near_sin_q1_for_q3_left_up,
+                    near_sin_q1_for_q3_right_down,
+                    near_sin_q1_for_q3_right_up,
                 ),
             )
-            (
-                swept_cost_q1_for_q3_left_down, swept_cos_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down,
-                swept_cost_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up,
-                swept_cost_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down,
-                swept_cost_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up, swept_sin_q1_for_q3_right_up,
-            ) = found
 
             def elsewhere_ahead_q1_left_down(
-                ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
-                follows_q1_for_q3_left_down: Truth, one_by_turned_length_q1_for_q3_left_down: Real,
-                sin_q1_before_q1_for_q3_left: Real, swept_cos_q1_for_q3_left_down: Real,
-                swept_cost_q1_for_q3_left_down: Real, swept_sin_q1_for_q3_left_down: Real, turn_q1_for_q3_left_down: Real,
-                turned_cos_q1_for_q3_left_down: Real, turned_cost_q1_for_q3_left_down: Real,
-                turned_sin_q1_for_q3_left_down: Real, wrist_x: Real, wrist_y: Real,
+                ahead_q1_before_q1_for_q3_right: Real,
+                cos_q1_before_q1_for_q3_left: Real,
+                follows_q1_for_q3_left_down: Truth,
+                one_by_turned_length_q1_for_q3_left_down: Real,
+                sin_q1_before_q1_for_q3_left: Real,
+                swept_cos_q1_for_q3_left_down: Real,
+                swept_cost_q1_for_q3_left_down: Real,
+                swept_sin_q1_for_q3_left_down: Real,
+                turn_q1_for_q3_left_down: Real,
+                turned_cos_q1_for_q3_left_down: Real,
+                turned_cost_q1_for_q3_left_down: Real,
+                turned_sin_q1_for_q3_left_down: Real,
+                wrist_x: Real,
+                wrist_y: Real,
             ) -> Reals:
 
                 def elsewhere_best_cost_q1_for_q3_left_down(
-                    ahead_q1_before_q1_for_q3_right: Real, one_by_turned_length_q1_for_q3_left_down: Real,
-                    turn_q1_for_q3_left_down: Real, turned_cos_q1_for_q3_left_down: Real,
-                    turned_cost_q1_for_q3_left_down: Real, turned_sin_q1_for_q3_left_down: Real,
+                    ahead_q1_before_q1_for_q3_right: Real,
+                    one_by_turned_length_q1_for_q3_left_down: Real,
+                    turn_q1_for_q3_left_down: Real,
+                    turned_cos_q1_for_q3_left_down: Real,
+                    turned_cost_q1_for_q3_left_down: Real,
+                    turned_sin_q1_for_q3_left_down: Real,
                 ) -> Reals:
                     best_cost_q1_for_q3_left_down = turned_cost_q1_for_q3_left_down
                     turned_ahead_q1_for_q3_left_down = (
-                        (-ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_left_down)
-                        *one_by_turned_length_q1_for_q3_left_down
-                    )
+                        -ahead_q1_before_q1_for_q3_right - d4 * turn_q1_for_q3_left_down
+                    ) * one_by_turned_length_q1_for_q3_left_down
                     best_ahead_q1_for_q3_left_down = turned_ahead_q1_for_q3_left_down
                     best_cos_q1_for_q3_left_down = turned_cos_q1_for_q3_left_down
                     best_sin_q1_for_q3_left_down = turned_sin_q1_for_q3_left_down
                     return (
-                        best_cost_q1_for_q3_left_down, best_ahead_q1_for_q3_left_down, best_cos_q1_for_q3_left_down,
+                        best_cost_q1_for_q3_left_down,
+                        best_ahead_q1_for_q3_left_down,
+                        best_cos_q1_for_q3_left_down,
                         best_sin_q1_for_q3_left_down,
                     )
 
                 best_cost_q1_for_q3_left_down = swept_cost_q1_for_q3_left_down
                 swept_ahead_q1_for_q3_left_down = (
-                    swept_cos_q1_for_q3_left_down*wrist_x + swept_sin_q1_for_q3_left_down*wrist_y
+                    swept_cos_q1_for_q3_left_down * wrist_x + swept_sin_q1_for_q3_left_down * wrist_y
                 )
                 best_ahead_q1_for_q3_left_down = swept_ahead_q1_for_q3_left_down
                 best_cos_q1_for_q3_left_down = swept_cos_q1_for_q3_left_down
                 best_sin_q1_for_q3_left_down = swept_sin_q1_for_q3_left_down
-                found = elsewhere(
+                (
+                    best_cost_q1_for_q3_left_down,
+                    best_ahead_q1_for_q3_left_down,
+                    best_cos_q1_for_q3_left_down,
+                    best_sin_q1_for_q3_left_down,
+                ) = elsewhere(
                     follows_q1_for_q3_left_down,
                     (
-                        best_cost_q1_for_q3_left_down, best_ahead_q1_for_q3_left_down, best_cos_q1_for_q3_left_down,
+                        best_cost_q1_for_q3_left_down,
+                        best_ahead_q1_for_q3_left_down,
+                        best_cos_q1_for_q3_left_down,
                         best_sin_q1_for_q3_left_down,
                     ),
                     elsewhere_best_cost_q1_for_q3_left_down,
                     (
-                        ahead_q1_before_q1_for_q3_right, one_by_turned_length_q1_for_q3_left_down, turn_q1_for_q3_left_down,
-                        turned_cos_q1_for_q3_left_down, turned_cost_q1_for_q3_left_down, turned_sin_q1_for_q3_left_down,
+                        ahead_q1_before_q1_for_q3_right,
+                        one_by_turned_length_q1_for_q3_left_down,
+                        turn_q1_for_q3_left_down,
+                        turned_cos_q1_for_q3_left_down,
+                        turned_cost_q1_for_q3_left_down,
+                        turned_sin_q1_for_q3_left_down,
                     ),
                 )
-                (
-                    best_cost_q1_for_q3_left_down, best_ahead_q1_for_q3_left_down, best_cos_q1_for_q3_left_down,
-                    best_sin_q1_for_q3_left_down,
-                ) = found
 
                 def elsewhere_ahead_q1_left_down(
-                    best_ahead_q1_for_q3_left_down: Real, best_cos_q1_for_q3_left_down: Real,
+                    best_ahead_q1_for_q3_left_down: Real,
+                    best_cos_q1_for_q3_left_down: Real,
                     best_sin_q1_for_q3_left_down: Real,
                 ) -> Reals:
-                    ahead_q1_left_down = best_ahead_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
-                    cos_q1_left_down = best_cos_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
-                    sin_q1_left_down = best_sin_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
+                    ahead_q1_left_down = (
+                        best_ahead_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
+                    )
+                    cos_q1_left_down = (
+                        best_cos_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
+                    )
+                    sin_q1_left_down = (
+                        best_sin_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
+                    )
                     return (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down)
 
-                ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                # turned within rounding, where the rest can be reached
+                ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right
                 cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
                 sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
                 ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down = elsewhere(
@@ -2106,7 +2315,8 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down)
 
-            ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            # turned within rounding, where the rest can be reached
+            ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right
             cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
             sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
             ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down = elsewhere(
@@ -2114,42 +2324,65 @@ class ArrayPrograms(Programs):
                 (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down),
                 elsewhere_ahead_q1_left_down,
                 (
-                    ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, follows_q1_for_q3_left_down,
-                    one_by_turned_length_q1_for_q3_left_down, sin_q1_before_q1_for_q3_left, swept_cos_q1_for_q3_left_down,
-                    swept_cost_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down, turn_q1_for_q3_left_down,
-                    turned_cos_q1_for_q3_left_down, turned_cost_q1_for_q3_left_down, turned_sin_q1_for_q3_left_down,
-                    wrist_x, wrist_y,
+                    ahead_q1_before_q1_for_q3_right,
+                    cos_q1_before_q1_for_q3_left,
+                    follows_q1_for_q3_left_down,
+                    one_by_turned_length_q1_for_q3_left_down,
+                    sin_q1_before_q1_for_q3_left,
+                    swept_cos_q1_for_q3_left_down,
+                    swept_cost_q1_for_q3_left_down,
+                    swept_sin_q1_for_q3_left_down,
+                    turn_q1_for_q3_left_down,
+                    turned_cos_q1_for_q3_left_down,
+                    turned_cost_q1_for_q3_left_down,
+                    turned_sin_q1_for_q3_left_down,
+                    wrist_x,
+                    wrist_y,
                 ),
             )
 
             def elsewhere_ahead_q1_left_up(
-                ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
-                cos_q5_before_q1_for_q3_left: Real, cos_q6_rate_q1_for_q3_left_up: Real,
-                r21_from_q1_before_q6_before_q1_for_q3_left_up: Real, r21_from_q1_rate_q1_for_q3_left: Real,
-                r22_from_q1_rate_q1_for_q3_left: Real, r23_from_q1_rate_q1_for_q3_left: Real, r31: Real, r32: Real,
-                r33: Real, radius_q6_before_q1_for_q3_left: Real, radius_q6_rate_q1_for_q3_left: Real,
-                sin_q1_before_q1_for_q3_left: Real, sin_q6_rate_q1_for_q3_left_up: Real,
-                swept_cos_q1_for_q3_left_up: Real, swept_cost_q1_for_q3_left_up: Real, swept_sin_q1_for_q3_left_up: Real,
-                value_q1_for_q3_left_up: Real, wrist_x: Real, wrist_x_from_q1_before_q1_for_q3_left_up: Real,
-                wrist_y: Real, wrist_y_from_q1_before_q1_for_q3_left_up: Real,
+                ahead_q1_before_q1_for_q3_right: Real,
+                cos_q1_before_q1_for_q3_left: Real,
+                cos_q5_before_q1_for_q3_left: Real,
+                cos_q6_rate_q1_for_q3_left_up: Real,
+                r21_from_q1_before_q6_before_q1_for_q3_left_up: Real,
+                r21_from_q1_rate_q1_for_q3_left: Real,
+                r22_from_q1_rate_q1_for_q3_left: Real,
+                r23_from_q1_rate_q1_for_q3_left: Real,
+                r31: Real,
+                r32: Real,
+                r33: Real,
+                radius_q6_before_q1_for_q3_left: Real,
+                radius_q6_rate_q1_for_q3_left: Real,
+                sin_q1_before_q1_for_q3_left: Real,
+                sin_q6_rate_q1_for_q3_left_up: Real,
+                swept_cos_q1_for_q3_left_up: Real,
+                swept_cost_q1_for_q3_left_up: Real,
+                swept_sin_q1_for_q3_left_up: Real,
+                value_q1_for_q3_left_up: Real,
+                wrist_x: Real,
+                wrist_x_from_q1_before_q1_for_q3_left_up: Real,
+                wrist_y: Real,
+                wrist_y_from_q1_before_q1_for_q3_left_up: Real,
             ) -> Reals:
                 r21_from_q1_before_q6_rate_q1_for_q3_left_up = (
-                    r31*cos_q6_rate_q1_for_q3_left_up - r32*sin_q6_rate_q1_for_q3_left_up
+                    r31 * cos_q6_rate_q1_for_q3_left_up - r32 * sin_q6_rate_q1_for_q3_left_up
                 )
                 r21_from_q1_before_q56_rate_q1_for_q3_left_up = (
-                    r21_from_q1_before_q6_rate_q1_for_q3_left_up*cos_q5_before_q1_for_q3_left
-                    + r33*radius_q6_rate_q1_for_q3_left
-                    - r21_from_q1_before_q6_before_q1_for_q3_left_up*r23_from_q1_rate_q1_for_q3_left
+                    r21_from_q1_before_q6_rate_q1_for_q3_left_up * cos_q5_before_q1_for_q3_left
+                    + r33 * radius_q6_rate_q1_for_q3_left
+                    - r21_from_q1_before_q6_before_q1_for_q3_left_up * r23_from_q1_rate_q1_for_q3_left
                 )
-                wrist_x_from_q1_rate_q1_for_q3_left_up = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3_left_up
+                wrist_x_from_q1_rate_q1_for_q3_left_up = -d4 - d5 * r21_from_q1_before_q56_rate_q1_for_q3_left_up
                 r22_from_q1_before_q6_rate_q1_for_q3_left_up = (
-                    r32*cos_q6_rate_q1_for_q3_left_up + r31*sin_q6_rate_q1_for_q3_left_up
+                    r32 * cos_q6_rate_q1_for_q3_left_up + r31 * sin_q6_rate_q1_for_q3_left_up
                 )
-                wrist_y_from_q1_rate_q1_for_q3_left_up = d5*r22_from_q1_before_q6_rate_q1_for_q3_left_up
+                wrist_y_from_q1_rate_q1_for_q3_left_up = d5 * r22_from_q1_before_q6_rate_q1_for_q3_left_up
                 # how it changes with q1
                 rate_q1_for_q3_left_up = (
-                    2.0*wrist_x_from_q1_before_q1_for_q3_left_up*wrist_x_from_q1_rate_q1_for_q3_left_up
-                    + 2.0*wrist_y_from_q1_before_q1_for_q3_left_up*wrist_y_from_q1_rate_q1_for_q3_left_up
+                    2.0 * wrist_x_from_q1_before_q1_for_q3_left_up * wrist_x_from_q1_rate_q1_for_q3_left_up
+                    + 2.0 * wrist_y_from_q1_before_q1_for_q3_left_up * wrist_y_from_q1_rate_q1_for_q3_left_up
                 )
 
                 def elsewhere_turn_q1_for_q3_left_up() -> Reals:
@@ -2157,93 +2390,111 @@ class ArrayPrograms(Programs):
                     return (turn_q1_for_q3_left_up,)
 
                 excess_q1_for_q3_left_up = select(
-                    value_q1_for_q3_left_up > 0.0, value_q1_for_q3_left_up - size_q1_for_q3,
+                    value_q1_for_q3_left_up > 0.0,
+                    value_q1_for_q3_left_up - size_q1_for_q3,
                     size_q1_for_q3 + value_q1_for_q3_left_up,
                 )
-                turn_q1_for_q3_left_up = -excess_q1_for_q3_left_up/rate_q1_for_q3_left_up  # to the boundary of the later step
+                # to the boundary of the later step
+                turn_q1_for_q3_left_up = -excess_q1_for_q3_left_up / rate_q1_for_q3_left_up
                 (turn_q1_for_q3_left_up,) = elsewhere(
                     absolute(rate_q1_for_q3_left_up) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_left_up,),
                     elsewhere_turn_q1_for_q3_left_up,
                     (),
                 )
-                turn_q1_for_q3_squared_left_up = turn_q1_for_q3_left_up*turn_q1_for_q3_left_up
+                turn_q1_for_q3_squared_left_up = turn_q1_for_q3_left_up * turn_q1_for_q3_left_up
                 # whether it follows q6
-                follows_q1_for_q3_left_up = (
-                    (turn_q1_for_q3_squared_left_up > 1e-12)
-                    | (
-                        (
-                            r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
-                            + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
-                        )
-                        *turn_q1_for_q3_squared_left_up > 1e-12*radius_q6_before_q1_for_q3_left
-                        *radius_q6_before_q1_for_q3_left
+                follows_q1_for_q3_left_up = (turn_q1_for_q3_squared_left_up > 1e-12) | (
+                    (
+                        r21_from_q1_rate_q1_for_q3_left * r21_from_q1_rate_q1_for_q3_left
+                        + r22_from_q1_rate_q1_for_q3_left * r22_from_q1_rate_q1_for_q3_left
                     )
+                    * turn_q1_for_q3_squared_left_up
+                    > 1e-12 * radius_q6_before_q1_for_q3_left * radius_q6_before_q1_for_q3_left
                 )
 
                 def elsewhere_best_cost_q1_for_q3_left_up(
-                    ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
-                    sin_q1_before_q1_for_q3_left: Real, turn_q1_for_q3_left_up: Real, turn_q1_for_q3_squared_left_up: Real,
-                    wrist_x: Real, wrist_y: Real,
+                    ahead_q1_before_q1_for_q3_right: Real,
+                    cos_q1_before_q1_for_q3_left: Real,
+                    sin_q1_before_q1_for_q3_left: Real,
+                    turn_q1_for_q3_left_up: Real,
+                    turn_q1_for_q3_squared_left_up: Real,
+                    wrist_x: Real,
+                    wrist_y: Real,
                 ) -> Reals:
                     turned_length_q1_for_q3_left_up = root(1.0 + turn_q1_for_q3_squared_left_up)
-                    one_by_turned_length_q1_for_q3_left_up = 1.0/turned_length_q1_for_q3_left_up
-                    turned_cos_q1_for_q3_left_up = (
-                        one_by_turned_length_q1_for_q3_left_up
-                        *(cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_up*sin_q1_before_q1_for_q3_left)
+                    one_by_turned_length_q1_for_q3_left_up = 1.0 / turned_length_q1_for_q3_left_up
+                    turned_cos_q1_for_q3_left_up = one_by_turned_length_q1_for_q3_left_up * (
+                        cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_up * sin_q1_before_q1_for_q3_left
                     )
-                    turned_sin_q1_for_q3_left_up = (
-                        one_by_turned_length_q1_for_q3_left_up
-                        *(sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left)
+                    turned_sin_q1_for_q3_left_up = one_by_turned_length_q1_for_q3_left_up * (
+                        sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_up * cos_q1_before_q1_for_q3_left
                     )
                     # what is left of its own equation
                     turned_cost_q1_for_q3_left_up = absolute(
-                        d4 + turned_cos_q1_for_q3_left_up*wrist_y - turned_sin_q1_for_q3_left_up*wrist_x
+                        d4 + turned_cos_q1_for_q3_left_up * wrist_y - turned_sin_q1_for_q3_left_up * wrist_x
                     )
                     best_cost_q1_for_q3_left_up = turned_cost_q1_for_q3_left_up
                     turned_ahead_q1_for_q3_left_up = (
-                        (-ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_left_up)
-                        *one_by_turned_length_q1_for_q3_left_up
-                    )
+                        -ahead_q1_before_q1_for_q3_right - d4 * turn_q1_for_q3_left_up
+                    ) * one_by_turned_length_q1_for_q3_left_up
                     best_ahead_q1_for_q3_left_up = turned_ahead_q1_for_q3_left_up
                     best_cos_q1_for_q3_left_up = turned_cos_q1_for_q3_left_up
                     best_sin_q1_for_q3_left_up = turned_sin_q1_for_q3_left_up
                     return (
-                        best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
+                        best_cost_q1_for_q3_left_up,
+                        best_ahead_q1_for_q3_left_up,
+                        best_cos_q1_for_q3_left_up,
                         best_sin_q1_for_q3_left_up,
                     )
 
                 best_cost_q1_for_q3_left_up = swept_cost_q1_for_q3_left_up
-                swept_ahead_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up*wrist_x + swept_sin_q1_for_q3_left_up*wrist_y
+                swept_ahead_q1_for_q3_left_up = (
+                    swept_cos_q1_for_q3_left_up * wrist_x + swept_sin_q1_for_q3_left_up * wrist_y
+                )
                 best_ahead_q1_for_q3_left_up = swept_ahead_q1_for_q3_left_up
                 best_cos_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up
                 best_sin_q1_for_q3_left_up = swept_sin_q1_for_q3_left_up
-                found = elsewhere(
+                (
+                    best_cost_q1_for_q3_left_up,
+                    best_ahead_q1_for_q3_left_up,
+                    best_cos_q1_for_q3_left_up,
+                    best_sin_q1_for_q3_left_up,
+                ) = elsewhere(
                     follows_q1_for_q3_left_up,
                     (
-                        best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
+                        best_cost_q1_for_q3_left_up,
+                        best_ahead_q1_for_q3_left_up,
+                        best_cos_q1_for_q3_left_up,
                         best_sin_q1_for_q3_left_up,
                     ),
                     elsewhere_best_cost_q1_for_q3_left_up,
                     (
-                        ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left,
-                        turn_q1_for_q3_left_up, turn_q1_for_q3_squared_left_up, wrist_x, wrist_y,
+                        ahead_q1_before_q1_for_q3_right,
+                        cos_q1_before_q1_for_q3_left,
+                        sin_q1_before_q1_for_q3_left,
+                        turn_q1_for_q3_left_up,
+                        turn_q1_for_q3_squared_left_up,
+                        wrist_x,
+                        wrist_y,
                     ),
                 )
-                (
-                    best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
-                    best_sin_q1_for_q3_left_up,
-                ) = found
 
                 def elsewhere_ahead_q1_left_up(
-                    best_ahead_q1_for_q3_left_up: Real, best_cos_q1_for_q3_left_up: Real, best_sin_q1_for_q3_left_up: Real,
+                    best_ahead_q1_for_q3_left_up: Real,
+                    best_cos_q1_for_q3_left_up: Real,
+                    best_sin_q1_for_q3_left_up: Real,
                 ) -> Reals:
-                    ahead_q1_left_up = best_ahead_q1_for_q3_left_up  # turned within rounding, where the rest can be reached
+                    ahead_q1_left_up = (
+                        best_ahead_q1_for_q3_left_up  # turned within rounding, where the rest can be reached
+                    )
                     cos_q1_left_up = best_cos_q1_for_q3_left_up  # turned within rounding, where the rest can be reached
                     sin_q1_left_up = best_sin_q1_for_q3_left_up  # turned within rounding, where the rest can be reached
                     return (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up)
 
-                ahead_q1_left_up = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                ahead_q1_left_up = (
+                    -ahead_q1_before_q1_for_q3_right
+                )  # turned within rounding, where the rest can be reached
                 cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
                 sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
                 ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up = elsewhere(
@@ -2262,18 +2513,40 @@ class ArrayPrograms(Programs):
                 (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up),
                 elsewhere_ahead_q1_left_up,
                 (
-                    ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, cos_q5_before_q1_for_q3_left,
-                    cos_q6_rate_q1_for_q3_left_up, r21_from_q1_before_q6_before_q1_for_q3_left_up,
-                    r21_from_q1_rate_q1_for_q3_left, r22_from_q1_rate_q1_for_q3_left, r23_from_q1_rate_q1_for_q3_left,
-                    r31, r32, r33, radius_q6_before_q1_for_q3_left, radius_q6_rate_q1_for_q3_left,
-                    sin_q1_before_q1_for_q3_left, sin_q6_rate_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up,
-                    swept_cost_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up, value_q1_for_q3_left_up, wrist_x,
-                    wrist_x_from_q1_before_q1_for_q3_left_up, wrist_y, wrist_y_from_q1_before_q1_for_q3_left_up,
+                    ahead_q1_before_q1_for_q3_right,
+                    cos_q1_before_q1_for_q3_left,
+                    cos_q5_before_q1_for_q3_left,
+                    cos_q6_rate_q1_for_q3_left_up,
+                    r21_from_q1_before_q6_before_q1_for_q3_left_up,
+                    r21_from_q1_rate_q1_for_q3_left,
+                    r22_from_q1_rate_q1_for_q3_left,
+                    r23_from_q1_rate_q1_for_q3_left,
+                    r31,
+                    r32,
+                    r33,
+                    radius_q6_before_q1_for_q3_left,
+                    radius_q6_rate_q1_for_q3_left,
+                    sin_q1_before_q1_for_q3_left,
+                    sin_q6_rate_q1_for_q3_left_up,
+                    swept_cos_q1_for_q3_left_up,
+                    swept_cost_q1_for_q3_left_up,
+                    swept_sin_q1_for_q3_left_up,
+                    value_q1_for_q3_left_up,
+                    wrist_x,
+                    wrist_x_from_q1_before_q1_for_q3_left_up,
+                    wrist_y,
+                    wrist_y_from_q1_before_q1_for_q3_left_up,
                 ),
             )
-            r23_from_q1_rate_q1_for_q3_right = -r13*cos_q1_before_q1_for_q3_right - r23*sin_q1_before_q1_for_q3_right
-            r21_from_q1_rate_q1_for_q3_right = -r11*cos_q1_before_q1_for_q3_right - r21*sin_q1_before_q1_for_q3_right
-            r22_from_q1_rate_q1_for_q3_right = -r12*cos_q1_before_q1_for_q3_right - r22*sin_q1_before_q1_for_q3_right
+            r23_from_q1_rate_q1_for_q3_right = (
+                -r13 * cos_q1_before_q1_for_q3_right - r23 * sin_q1_before_q1_for_q3_right
+            )
+            r21_from_q1_rate_q1_for_q3_right = (
+                -r11 * cos_q1_before_q1_for_q3_right - r21 * sin_q1_before_q1_for_q3_right
+            )
+            r22_from_q1_rate_q1_for_q3_right = (
+                -r12 * cos_q1_before_q1_for_q3_right - r22 * sin_q1_before_q1_for_q3_right
+            )
 
             def elsewhere_radius_q6_rate_q1_for_q3_right() -> Reals:
                 radius_q6_rate_q1_for_q3_right = 0.0
@@ -2282,16 +2555,19 @@ class ArrayPrograms(Programs):
                 cos_q6_rate_q1_for_q3_right_up = 0.0
                 sin_q6_rate_q1_for_q3_right_up = 0.0
                 return (
-                    radius_q6_rate_q1_for_q3_right, cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down,
-                    cos_q6_rate_q1_for_q3_right_up, sin_q6_rate_q1_for_q3_right_up,
+                    radius_q6_rate_q1_for_q3_right,
+                    cos_q6_rate_q1_for_q3_right_down,
+                    sin_q6_rate_q1_for_q3_right_down,
+                    cos_q6_rate_q1_for_q3_right_up,
+                    sin_q6_rate_q1_for_q3_right_up,
                 )
 
             radius_q6_rate_q1_for_q3_right = (
                 -(
-                    -r21_from_q1_before_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
-                    - r22_from_q1_before_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
+                    -r21_from_q1_before_q1_for_q3_right * r21_from_q1_rate_q1_for_q3_right
+                    - r22_from_q1_before_q1_for_q3_right * r22_from_q1_rate_q1_for_q3_right
                 )
-                /radius_q6_before_q1_for_q3_right
+                / radius_q6_before_q1_for_q3_right
             )
 
             def elsewhere_cos_q6_rate_q1_for_q3_right_down() -> Reals:
@@ -2300,94 +2576,105 @@ class ArrayPrograms(Programs):
                 cos_q6_rate_q1_for_q3_right_up = 0.0
                 sin_q6_rate_q1_for_q3_right_up = 0.0
                 return (
-                    cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down, cos_q6_rate_q1_for_q3_right_up,
+                    cos_q6_rate_q1_for_q3_right_down,
+                    sin_q6_rate_q1_for_q3_right_down,
+                    cos_q6_rate_q1_for_q3_right_up,
                     sin_q6_rate_q1_for_q3_right_up,
                 )
 
-            cos_q6_rate_q1_for_q3_right_down = (
-                one_by_radius_q6_before_q1_for_q3_right
-                *(
-                    part_of_cos_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
-                    - r21_from_q1_rate_q1_for_q3_right
-                )
+            cos_q6_rate_q1_for_q3_right_down = one_by_radius_q6_before_q1_for_q3_right * (
+                part_of_cos_q6_before_q1_for_q3_right_down * radius_q6_rate_q1_for_q3_right
+                - r21_from_q1_rate_q1_for_q3_right
             )
             sin_q6_rate_q1_for_q3_right_down = (
-                (
-                    r22_from_q1_rate_q1_for_q3_right
-                    - part_of_sin_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
-                )
-                *one_by_radius_q6_before_q1_for_q3_right
-            )
+                r22_from_q1_rate_q1_for_q3_right
+                - part_of_sin_q6_before_q1_for_q3_right_down * radius_q6_rate_q1_for_q3_right
+            ) * one_by_radius_q6_before_q1_for_q3_right
             cos_q6_rate_q1_for_q3_right_up = (
-                (
-                    r21_from_q1_rate_q1_for_q3_right
-                    - part_of_cos_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
-                )
-                *one_by_radius_q6_before_q1_for_q3_right
+                r21_from_q1_rate_q1_for_q3_right
+                - part_of_cos_q6_before_q1_for_q3_right_down * radius_q6_rate_q1_for_q3_right
+            ) * one_by_radius_q6_before_q1_for_q3_right
+            sin_q6_rate_q1_for_q3_right_up = one_by_radius_q6_before_q1_for_q3_right * (
+                part_of_sin_q6_before_q1_for_q3_right_down * radius_q6_rate_q1_for_q3_right
+                - r22_from_q1_rate_q1_for_q3_right
             )
-            sin_q6_rate_q1_for_q3_right_up = (
-                one_by_radius_q6_before_q1_for_q3_right
-                *(
-                    part_of_sin_q6_before_q1_for_q3_right_down*radius_q6_rate_q1_for_q3_right
-                    - r22_from_q1_rate_q1_for_q3_right
-                )
-            )
-            found = elsewhere(
+            (
+                cos_q6_rate_q1_for_q3_right_down,
+                sin_q6_rate_q1_for_q3_right_down,
+                cos_q6_rate_q1_for_q3_right_up,
+                sin_q6_rate_q1_for_q3_right_up,
+            ) = elsewhere(
                 radius_q6_before_q1_for_q3_right > 1e-11,
                 (
-                    cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down, cos_q6_rate_q1_for_q3_right_up,
+                    cos_q6_rate_q1_for_q3_right_down,
+                    sin_q6_rate_q1_for_q3_right_down,
+                    cos_q6_rate_q1_for_q3_right_up,
                     sin_q6_rate_q1_for_q3_right_up,
                 ),
                 elsewhere_cos_q6_rate_q1_for_q3_right_down,
                 (),
             )
             (
-                cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down, cos_q6_rate_q1_for_q3_right_up,
+                radius_q6_rate_q1_for_q3_right,
+                cos_q6_rate_q1_for_q3_right_down,
+                sin_q6_rate_q1_for_q3_right_down,
+                cos_q6_rate_q1_for_q3_right_up,
                 sin_q6_rate_q1_for_q3_right_up,
-            ) = found
-            found = elsewhere(
+            ) = elsewhere(
                 radius_q6_before_q1_for_q3_right > 0.0,
                 (
-                    radius_q6_rate_q1_for_q3_right, cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down,
-                    cos_q6_rate_q1_for_q3_right_up, sin_q6_rate_q1_for_q3_right_up,
+                    radius_q6_rate_q1_for_q3_right,
+                    cos_q6_rate_q1_for_q3_right_down,
+                    sin_q6_rate_q1_for_q3_right_down,
+                    cos_q6_rate_q1_for_q3_right_up,
+                    sin_q6_rate_q1_for_q3_right_up,
                 ),
                 elsewhere_radius_q6_rate_q1_for_q3_right,
                 (),
             )
-            (
-                radius_q6_rate_q1_for_q3_right, cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down,
-                cos_q6_rate_q1_for_q3_right_up, sin_q6_rate_q1_for_q3_right_up,
-            ) = found
 
             def elsewhere_ahead_q1_right_down(
-                ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
-                cos_q5_before_q1_for_q3_right: Real, cos_q6_rate_q1_for_q3_right_down: Real,
-                r21_from_q1_before_q6_before_q1_for_q3_right_down: Real, r21_from_q1_rate_q1_for_q3_right: Real,
-                r22_from_q1_rate_q1_for_q3_right: Real, r23_from_q1_rate_q1_for_q3_right: Real, r31: Real, r32: Real,
-                r33: Real, radius_q6_before_q1_for_q3_right: Real, radius_q6_rate_q1_for_q3_right: Real,
-                sin_q1_before_q1_for_q3_right: Real, sin_q6_rate_q1_for_q3_right_down: Real,
-                swept_cos_q1_for_q3_right_down: Real, swept_cost_q1_for_q3_right_down: Real,
-                swept_sin_q1_for_q3_right_down: Real, value_q1_for_q3_right_down: Real, wrist_x: Real,
-                wrist_x_from_q1_before_q1_for_q3_right_down: Real, wrist_y: Real,
+                ahead_q1_before_q1_for_q3_right: Real,
+                cos_q1_before_q1_for_q3_right: Real,
+                cos_q5_before_q1_for_q3_right: Real,
+                cos_q6_rate_q1_for_q3_right_down: Real,
+                r21_from_q1_before_q6_before_q1_for_q3_right_down: Real,
+                r21_from_q1_rate_q1_for_q3_right: Real,
+                r22_from_q1_rate_q1_for_q3_right: Real,
+                r23_from_q1_rate_q1_for_q3_right: Real,
+                r31: Real,
+                r32: Real,
+                r33: Real,
+                radius_q6_before_q1_for_q3_right: Real,
+                radius_q6_rate_q1_for_q3_right: Real,
+                sin_q1_before_q1_for_q3_right: Real,
+                sin_q6_rate_q1_for_q3_right_down: Real,
+                swept_cos_q1_for_q3_right_down: Real,
+                swept_cost_q1_for_q3_right_down: Real,
+                swept_sin_q1_for_q3_right_down: Real,
+                value_q1_for_q3_right_down: Real,
+                wrist_x: Real,
+                wrist_x_from_q1_before_q1_for_q3_right_down: Real,
+                wrist_y: Real,
                 wrist_y_from_q1_before_q1_for_q3_right_down: Real,
             ) -> Reals:
                 r21_from_q1_before_q6_rate_q1_for_q3_right_down = (
-                    r31*cos_q6_rate_q1_for_q3_right_down - r32*sin_q6_rate_q1_for_q3_right_down
+                    r31 * cos_q6_rate_q1_for_q3_right_down - r32 * sin_q6_rate_q1_for_q3_right_down
                 )
                 r21_from_q1_before_q56_rate_q1_for_q3_right_down = (
-                    r21_from_q1_before_q6_rate_q1_for_q3_right_down*cos_q5_before_q1_for_q3_right
-                    - r21_from_q1_before_q6_before_q1_for_q3_right_down*r23_from_q1_rate_q1_for_q3_right
-                    - r33*radius_q6_rate_q1_for_q3_right
+                    r21_from_q1_before_q6_rate_q1_for_q3_right_down * cos_q5_before_q1_for_q3_right
+                    - r21_from_q1_before_q6_before_q1_for_q3_right_down * r23_from_q1_rate_q1_for_q3_right
+                    - r33 * radius_q6_rate_q1_for_q3_right
                 )
-                wrist_x_from_q1_rate_q1_for_q3_right_down = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3_right_down
+                wrist_x_from_q1_rate_q1_for_q3_right_down = -d4 - d5 * r21_from_q1_before_q56_rate_q1_for_q3_right_down
                 r22_from_q1_before_q6_rate_q1_for_q3_right_down = (
-                    r32*cos_q6_rate_q1_for_q3_right_down + r31*sin_q6_rate_q1_for_q3_right_down
+                    r32 * cos_q6_rate_q1_for_q3_right_down + r31 * sin_q6_rate_q1_for_q3_right_down
                 )
-                wrist_y_from_q1_rate_q1_for_q3_right_down = d5*r22_from_q1_before_q6_rate_q1_for_q3_right_down
+                wrist_y_from_q1_rate_q1_for_q3_right_down = d5 * r22_from_q1_before_q6_rate_q1_for_q3_right_down
                 # how it changes with q1
                 rate_q1_for_q3_right_down = (
-                    2.0*wrist_x_from_q1_before_q1_for_q3_right_down*wrist_x_from_q1_rate_q1_for_q3_right_down
-                    + 2.0*wrist_y_from_q1_before_q1_for_q3_right_down*wrist_y_from_q1_rate_q1_for_q3_right_down
+                    2.0 * wrist_x_from_q1_before_q1_for_q3_right_down * wrist_x_from_q1_rate_q1_for_q3_right_down
+                    + 2.0 * wrist_y_from_q1_before_q1_for_q3_right_down * wrist_y_from_q1_rate_q1_for_q3_right_down
                 )
 
                 def elsewhere_turn_q1_for_q3_right_down() -> Reals:
@@ -2395,98 +2682,119 @@ class ArrayPrograms(Programs):
                     return (turn_q1_for_q3_right_down,)
 
                 excess_q1_for_q3_right_down = select(
-                    value_q1_for_q3_right_down > 0.0, value_q1_for_q3_right_down - size_q1_for_q3,
+                    value_q1_for_q3_right_down > 0.0,
+                    value_q1_for_q3_right_down - size_q1_for_q3,
                     size_q1_for_q3 + value_q1_for_q3_right_down,
                 )
                 # to the boundary of the later step
-                turn_q1_for_q3_right_down = -excess_q1_for_q3_right_down/rate_q1_for_q3_right_down
+                turn_q1_for_q3_right_down = -excess_q1_for_q3_right_down / rate_q1_for_q3_right_down
                 (turn_q1_for_q3_right_down,) = elsewhere(
                     absolute(rate_q1_for_q3_right_down) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_right_down,),
                     elsewhere_turn_q1_for_q3_right_down,
                     (),
                 )
-                turn_q1_for_q3_squared_right_down = turn_q1_for_q3_right_down*turn_q1_for_q3_right_down
+                turn_q1_for_q3_squared_right_down = turn_q1_for_q3_right_down * turn_q1_for_q3_right_down
                 # whether it follows q6
-                follows_q1_for_q3_right_down = (
-                    (turn_q1_for_q3_squared_right_down > 1e-12)
-                    | (
-                        (
-                            r21_from_q1_rate_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
-                            + r22_from_q1_rate_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
-                        )
-                        *turn_q1_for_q3_squared_right_down > 1e-12*radius_q6_before_q1_for_q3_right
-                        *radius_q6_before_q1_for_q3_right
+                follows_q1_for_q3_right_down = (turn_q1_for_q3_squared_right_down > 1e-12) | (
+                    (
+                        r21_from_q1_rate_q1_for_q3_right * r21_from_q1_rate_q1_for_q3_right
+                        + r22_from_q1_rate_q1_for_q3_right * r22_from_q1_rate_q1_for_q3_right
                     )
+                    * turn_q1_for_q3_squared_right_down
+                    > 1e-12 * radius_q6_before_q1_for_q3_right * radius_q6_before_q1_for_q3_right
                 )
 
                 def elsewhere_best_cost_q1_for_q3_right_down(
-                    ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
-                    sin_q1_before_q1_for_q3_right: Real, turn_q1_for_q3_right_down: Real,
-                    turn_q1_for_q3_squared_right_down: Real, wrist_x: Real, wrist_y: Real,
+                    ahead_q1_before_q1_for_q3_right: Real,
+                    cos_q1_before_q1_for_q3_right: Real,
+                    sin_q1_before_q1_for_q3_right: Real,
+                    turn_q1_for_q3_right_down: Real,
+                    turn_q1_for_q3_squared_right_down: Real,
+                    wrist_x: Real,
+                    wrist_y: Real,
                 ) -> Reals:
                     turned_length_q1_for_q3_right_down = root(1.0 + turn_q1_for_q3_squared_right_down)
-                    one_by_turned_length_q1_for_q3_right_down = 1.0/turned_length_q1_for_q3_right_down
-                    turned_cos_q1_for_q3_right_down = (
-                        one_by_turned_length_q1_for_q3_right_down
-                        *(cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_down*sin_q1_before_q1_for_q3_right)
+                    one_by_turned_length_q1_for_q3_right_down = 1.0 / turned_length_q1_for_q3_right_down
+                    turned_cos_q1_for_q3_right_down = one_by_turned_length_q1_for_q3_right_down * (
+                        cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_down * sin_q1_before_q1_for_q3_right
                     )
-                    turned_sin_q1_for_q3_right_down = (
-                        one_by_turned_length_q1_for_q3_right_down
-                        *(sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right)
+                    turned_sin_q1_for_q3_right_down = one_by_turned_length_q1_for_q3_right_down * (
+                        sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_down * cos_q1_before_q1_for_q3_right
                     )
                     # what is left of its own equation
                     turned_cost_q1_for_q3_right_down = absolute(
-                        d4 + turned_cos_q1_for_q3_right_down*wrist_y - turned_sin_q1_for_q3_right_down*wrist_x
+                        d4 + turned_cos_q1_for_q3_right_down * wrist_y - turned_sin_q1_for_q3_right_down * wrist_x
                     )
                     best_cost_q1_for_q3_right_down = turned_cost_q1_for_q3_right_down
                     turned_ahead_q1_for_q3_right_down = (
-                        (ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_right_down)*one_by_turned_length_q1_for_q3_right_down
-                    )
+                        ahead_q1_before_q1_for_q3_right - d4 * turn_q1_for_q3_right_down
+                    ) * one_by_turned_length_q1_for_q3_right_down
                     best_ahead_q1_for_q3_right_down = turned_ahead_q1_for_q3_right_down
                     best_cos_q1_for_q3_right_down = turned_cos_q1_for_q3_right_down
                     best_sin_q1_for_q3_right_down = turned_sin_q1_for_q3_right_down
                     return (
-                        best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
+                        best_cost_q1_for_q3_right_down,
+                        best_ahead_q1_for_q3_right_down,
+                        best_cos_q1_for_q3_right_down,
                         best_sin_q1_for_q3_right_down,
                     )
 
                 best_cost_q1_for_q3_right_down = swept_cost_q1_for_q3_right_down
                 swept_ahead_q1_for_q3_right_down = (
-                    swept_cos_q1_for_q3_right_down*wrist_x + swept_sin_q1_for_q3_right_down*wrist_y
+                    swept_cos_q1_for_q3_right_down * wrist_x + swept_sin_q1_for_q3_right_down * wrist_y
                 )
                 best_ahead_q1_for_q3_right_down = swept_ahead_q1_for_q3_right_down
                 best_cos_q1_for_q3_right_down = swept_cos_q1_for_q3_right_down
                 best_sin_q1_for_q3_right_down = swept_sin_q1_for_q3_right_down
-                found = elsewhere(
+                (
+                    best_cost_q1_for_q3_right_down,
+                    best_ahead_q1_for_q3_right_down,
+                    best_cos_q1_for_q3_right_down,
+                    best_sin_q1_for_q3_right_down,
+                ) = elsewhere(
                     follows_q1_for_q3_right_down,
                     (
-                        best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
+                        best_cost_q1_for_q3_right_down,
+                        best_ahead_q1_for_q3_right_down,
+                        best_cos_q1_for_q3_right_down,
                         best_sin_q1_for_q3_right_down,
                     ),
                     elsewhere_best_cost_q1_for_q3_right_down,
                     (
-                        ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right,
-                        turn_q1_for_q3_right_down, turn_q1_for_q3_squared_right_down, wrist_x, wrist_y,
+                        ahead_q1_before_q1_for_q3_right,
+                        cos_q1_before_q1_for_q3_right,
+                        sin_q1_before_q1_for_q3_right,
+                        turn_q1_for_q3_right_down,
+                        turn_q1_for_q3_squared_right_down,
+                        wrist_x,
+                        wrist_y,
                     ),
                 )
-                (
-                    best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
-                    best_sin_q1_for_q3_right_down,
-                ) = found
 
                 def elsewhere_ahead_q1_right_down(
-                    best_ahead_q1_for_q3_right_down: Real, best_cos_q1_for_q3_right_down: Real,
+                    best_ahead_q1_for_q3_right_down: Real,
+                    best_cos_q1_for_q3_right_down: Real,
                     best_sin_q1_for_q3_right_down: Real,
                 ) -> Reals:
-                    ahead_q1_right_down = best_ahead_q1_for_q3_right_down  # turned within rounding, where the rest can be reached
-                    cos_q1_right_down = best_cos_q1_for_q3_right_down  # turned within rounding, where the rest can be reached
-                    sin_q1_right_down = best_sin_q1_for_q3_right_down  # turned within rounding, where the rest can be reached
+                    # turned within rounding, where the rest can be reached
+                    ahead_q1_right_down = best_ahead_q1_for_q3_right_down
+                    cos_q1_right_down = (
+                        best_cos_q1_for_q3_right_down  # turned within rounding, where the rest can be reached
+                    )
+                    sin_q1_right_down = (
+                        best_sin_q1_for_q3_right_down  # turned within rounding, where the rest can be reached
+                    )
                     return (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down)
 
-                ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-                cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-                sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                # turned within rounding, where the rest can be reached
+                ahead_q1_right_down = ahead_q1_before_q1_for_q3_right
+                cos_q1_right_down = (
+                    cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                )
+                sin_q1_right_down = (
+                    sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                )
                 ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down = elsewhere(
                     best_cost_q1_for_q3_right_down > machine_scale_times_rounding,
                     (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down),
@@ -2495,7 +2803,8 @@ class ArrayPrograms(Programs):
                 )
                 return (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down)
 
-            ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            # turned within rounding, where the rest can be reached
+            ahead_q1_right_down = ahead_q1_before_q1_for_q3_right
             cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
             sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
             ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down = elsewhere(
@@ -2503,45 +2812,74 @@ class ArrayPrograms(Programs):
                 (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down),
                 elsewhere_ahead_q1_right_down,
                 (
-                    ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, cos_q5_before_q1_for_q3_right,
-                    cos_q6_rate_q1_for_q3_right_down, r21_from_q1_before_q6_before_q1_for_q3_right_down,
-                    r21_from_q1_rate_q1_for_q3_right, r22_from_q1_rate_q1_for_q3_right, r23_from_q1_rate_q1_for_q3_right,
-                    r31, r32, r33, radius_q6_before_q1_for_q3_right, radius_q6_rate_q1_for_q3_right,
-                    sin_q1_before_q1_for_q3_right, sin_q6_rate_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down,
-                    swept_cost_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down, value_q1_for_q3_right_down, wrist_x,
-                    wrist_x_from_q1_before_q1_for_q3_right_down, wrist_y, wrist_y_from_q1_before_q1_for_q3_right_down,
+                    ahead_q1_before_q1_for_q3_right,
+                    cos_q1_before_q1_for_q3_right,
+                    cos_q5_before_q1_for_q3_right,
+                    cos_q6_rate_q1_for_q3_right_down,
+                    r21_from_q1_before_q6_before_q1_for_q3_right_down,
+                    r21_from_q1_rate_q1_for_q3_right,
+                    r22_from_q1_rate_q1_for_q3_right,
+                    r23_from_q1_rate_q1_for_q3_right,
+                    r31,
+                    r32,
+                    r33,
+                    radius_q6_before_q1_for_q3_right,
+                    radius_q6_rate_q1_for_q3_right,
+                    sin_q1_before_q1_for_q3_right,
+                    sin_q6_rate_q1_for_q3_right_down,
+                    swept_cos_q1_for_q3_right_down,
+                    swept_cost_q1_for_q3_right_down,
+                    swept_sin_q1_for_q3_right_down,
+                    value_q1_for_q3_right_down,
+                    wrist_x,
+                    wrist_x_from_q1_before_q1_for_q3_right_down,
+                    wrist_y,
+                    wrist_y_from_q1_before_q1_for_q3_right_down,
                 ),
             )
 
             def elsewhere_ahead_q1_right_up(
-                ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
-                cos_q5_before_q1_for_q3_right: Real, cos_q6_rate_q1_for_q3_right_up: Real,
-                r21_from_q1_before_q6_before_q1_for_q3_right_up: Real, r21_from_q1_rate_q1_for_q3_right: Real,
-                r22_from_q1_rate_q1_for_q3_right: Real, r23_from_q1_rate_q1_for_q3_right: Real, r31: Real, r32: Real,
-                r33: Real, radius_q6_before_q1_for_q3_right: Real, radius_q6_rate_q1_for_q3_right: Real,
-                sin_q1_before_q1_for_q3_right: Real, sin_q6_rate_q1_for_q3_right_up: Real,
-                swept_cos_q1_for_q3_right_up: Real, swept_cost_q1_for_q3_right_up: Real,
-                swept_sin_q1_for_q3_right_up: Real, value_q1_for_q3_right_up: Real, wrist_x: Real,
-                wrist_x_from_q1_before_q1_for_q3_right_up: Real, wrist_y: Real,
+                ahead_q1_before_q1_for_q3_right: Real,
+                cos_q1_before_q1_for_q3_right: Real,
+                cos_q5_before_q1_for_q3_right: Real,
+                cos_q6_rate_q1_for_q3_right_up: Real,
+                r21_from_q1_before_q6_before_q1_for_q3_right_up: Real,
+                r21_from_q1_rate_q1_for_q3_right: Real,
+                r22_from_q1_rate_q1_for_q3_right: Real,
+                r23_from_q1_rate_q1_for_q3_right: Real,
+                r31: Real,
+                r32: Real,
+                r33: Real,
+                radius_q6_before_q1_for_q3_right: Real,
+                radius_q6_rate_q1_for_q3_right: Real,
+                sin_q1_before_q1_for_q3_right: Real,
+                sin_q6_rate_q1_for_q3_right_up: Real,
+                swept_cos_q1_for_q3_right_up: Real,
+                swept_cost_q1_for_q3_right_up: Real,
+                swept_sin_q1_for_q3_right_up: Real,
+                value_q1_for_q3_right_up: Real,
+                wrist_x: Real,
+                wrist_x_from_q1_before_q1_for_q3_right_up: Real,
+                wrist_y: Real,
                 wrist_y_from_q1_before_q1_for_q3_right_up: Real,
             ) -> Reals:
                 r21_from_q1_before_q6_rate_q1_for_q3_right_up = (
-                    r31*cos_q6_rate_q1_for_q3_right_up - r32*sin_q6_rate_q1_for_q3_right_up
+                    r31 * cos_q6_rate_q1_for_q3_right_up - r32 * sin_q6_rate_q1_for_q3_right_up
                 )
                 r21_from_q1_before_q56_rate_q1_for_q3_right_up = (
-                    r21_from_q1_before_q6_rate_q1_for_q3_right_up*cos_q5_before_q1_for_q3_right
-                    + r33*radius_q6_rate_q1_for_q3_right
-                    - r21_from_q1_before_q6_before_q1_for_q3_right_up*r23_from_q1_rate_q1_for_q3_right
+                    r21_from_q1_before_q6_rate_q1_for_q3_right_up * cos_q5_before_q1_for_q3_right
+                    + r33 * radius_q6_rate_q1_for_q3_right
+                    - r21_from_q1_before_q6_before_q1_for_q3_right_up * r23_from_q1_rate_q1_for_q3_right
                 )
-                wrist_x_from_q1_rate_q1_for_q3_right_up = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3_right_up
+                wrist_x_from_q1_rate_q1_for_q3_right_up = -d4 - d5 * r21_from_q1_before_q56_rate_q1_for_q3_right_up
                 r22_from_q1_before_q6_rate_q1_for_q3_right_up = (
-                    r32*cos_q6_rate_q1_for_q3_right_up + r31*sin_q6_rate_q1_for_q3_right_up
+                    r32 * cos_q6_rate_q1_for_q3_right_up + r31 * sin_q6_rate_q1_for_q3_right_up
                 )
-                wrist_y_from_q1_rate_q1_for_q3_right_up = d5*r22_from_q1_before_q6_rate_q1_for_q3_right_up
+                wrist_y_from_q1_rate_q1_for_q3_right_up = d5 * r22_from_q1_before_q6_rate_q1_for_q3_right_up
                 # how it changes with q1
                 rate_q1_for_q3_right_up = (
-                    2.0*wrist_x_from_q1_before_q1_for_q3_right_up*wrist_x_from_q1_rate_q1_for_q3_right_up
-                    + 2.0*wrist_y_from_q1_before_q1_for_q3_right_up*wrist_y_from_q1_rate_q1_for_q3_right_up
+                    2.0 * wrist_x_from_q1_before_q1_for_q3_right_up * wrist_x_from_q1_rate_q1_for_q3_right_up
+                    + 2.0 * wrist_y_from_q1_before_q1_for_q3_right_up * wrist_y_from_q1_rate_q1_for_q3_right_up
                 )
 
                 def elsewhere_turn_q1_for_q3_right_up() -> Reals:
@@ -2549,93 +2887,115 @@ class ArrayPrograms(Programs):
                     return (turn_q1_for_q3_right_up,)
 
                 excess_q1_for_q3_right_up = select(
-                    value_q1_for_q3_right_up > 0.0, value_q1_for_q3_right_up - size_q1_for_q3,
+                    value_q1_for_q3_right_up > 0.0,
+                    value_q1_for_q3_right_up - size_q1_for_q3,
                     size_q1_for_q3 + value_q1_for_q3_right_up,
                 )
                 # to the boundary of the later step
-                turn_q1_for_q3_right_up = -excess_q1_for_q3_right_up/rate_q1_for_q3_right_up
+                turn_q1_for_q3_right_up = -excess_q1_for_q3_right_up / rate_q1_for_q3_right_up
                 (turn_q1_for_q3_right_up,) = elsewhere(
                     absolute(rate_q1_for_q3_right_up) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_right_up,),
                     elsewhere_turn_q1_for_q3_right_up,
                     (),
                 )
-                turn_q1_for_q3_squared_right_up = turn_q1_for_q3_right_up*turn_q1_for_q3_right_up
+                turn_q1_for_q3_squared_right_up = turn_q1_for_q3_right_up * turn_q1_for_q3_right_up
                 # whether it follows q6
-                follows_q1_for_q3_right_up = (
-                    (turn_q1_for_q3_squared_right_up > 1e-12)
-                    | (
-                        (
-                            r21_from_q1_rate_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
-                            + r22_from_q1_rate_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
-                        )
-                        *turn_q1_for_q3_squared_right_up > 1e-12*radius_q6_before_q1_for_q3_right
-                        *radius_q6_before_q1_for_q3_right
+                follows_q1_for_q3_right_up = (turn_q1_for_q3_squared_right_up > 1e-12) | (
+                    (
+                        r21_from_q1_rate_q1_for_q3_right * r21_from_q1_rate_q1_for_q3_right
+                        + r22_from_q1_rate_q1_for_q3_right * r22_from_q1_rate_q1_for_q3_right
                     )
+                    * turn_q1_for_q3_squared_right_up
+                    > 1e-12 * radius_q6_before_q1_for_q3_right * radius_q6_before_q1_for_q3_right
                 )
 
                 def elsewhere_best_cost_q1_for_q3_right_up(
-                    ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
-                    sin_q1_before_q1_for_q3_right: Real, turn_q1_for_q3_right_up: Real, turn_q1_for_q3_squared_right_up: Real,
-                    wrist_x: Real, wrist_y: Real,
+                    ahead_q1_before_q1_for_q3_right: Real,
+                    cos_q1_before_q1_for_q3_right: Real,
+                    sin_q1_before_q1_for_q3_right: Real,
+                    turn_q1_for_q3_right_up: Real,
+                    turn_q1_for_q3_squared_right_up: Real,
+                    wrist_x: Real,
+                    wrist_y: Real,
                 ) -> Reals:
                     turned_length_q1_for_q3_right_up = root(1.0 + turn_q1_for_q3_squared_right_up)
-                    one_by_turned_length_q1_for_q3_right_up = 1.0/turned_length_q1_for_q3_right_up
-                    turned_cos_q1_for_q3_right_up = (
-                        one_by_turned_length_q1_for_q3_right_up
-                        *(cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_up*sin_q1_before_q1_for_q3_right)
+                    one_by_turned_length_q1_for_q3_right_up = 1.0 / turned_length_q1_for_q3_right_up
+                    turned_cos_q1_for_q3_right_up = one_by_turned_length_q1_for_q3_right_up * (
+                        cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_up * sin_q1_before_q1_for_q3_right
                     )
-                    turned_sin_q1_for_q3_right_up = (
-                        one_by_turned_length_q1_for_q3_right_up
-                        *(sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right)
+                    turned_sin_q1_for_q3_right_up = one_by_turned_length_q1_for_q3_right_up * (
+                        sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_up * cos_q1_before_q1_for_q3_right
                     )
                     # what is left of its own equation
                     turned_cost_q1_for_q3_right_up = absolute(
-                        d4 + turned_cos_q1_for_q3_right_up*wrist_y - turned_sin_q1_for_q3_right_up*wrist_x
+                        d4 + turned_cos_q1_for_q3_right_up * wrist_y - turned_sin_q1_for_q3_right_up * wrist_x
                     )
                     best_cost_q1_for_q3_right_up = turned_cost_q1_for_q3_right_up
                     turned_ahead_q1_for_q3_right_up = (
-                        (ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_right_up)*one_by_turned_length_q1_for_q3_right_up
-                    )
+                        ahead_q1_before_q1_for_q3_right - d4 * turn_q1_for_q3_right_up
+                    ) * one_by_turned_length_q1_for_q3_right_up
                     best_ahead_q1_for_q3_right_up = turned_ahead_q1_for_q3_right_up
                     best_cos_q1_for_q3_right_up = turned_cos_q1_for_q3_right_up
                     best_sin_q1_for_q3_right_up = turned_sin_q1_for_q3_right_up
                     return (
-                        best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
+                        best_cost_q1_for_q3_right_up,
+                        best_ahead_q1_for_q3_right_up,
+                        best_cos_q1_for_q3_right_up,
                         best_sin_q1_for_q3_right_up,
                     )
 
                 best_cost_q1_for_q3_right_up = swept_cost_q1_for_q3_right_up
-                swept_ahead_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up*wrist_x + swept_sin_q1_for_q3_right_up*wrist_y
+                swept_ahead_q1_for_q3_right_up = (
+                    swept_cos_q1_for_q3_right_up * wrist_x + swept_sin_q1_for_q3_right_up * wrist_y
+                )
                 best_ahead_q1_for_q3_right_up = swept_ahead_q1_for_q3_right_up
                 best_cos_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up
                 best_sin_q1_for_q3_right_up = swept_sin_q1_for_q3_right_up
-                found = elsewhere(
+                (
+                    best_cost_q1_for_q3_right_up,
+                    best_ahead_q1_for_q3_right_up,
+                    best_cos_q1_for_q3_right_up,
+                    best_sin_q1_for_q3_right_up,
+                ) = elsewhere(
                     follows_q1_for_q3_right_up,
                     (
-                        best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
+                        best_cost_q1_for_q3_right_up,
+                        best_ahead_q1_for_q3_right_up,
+                        best_cos_q1_for_q3_right_up,
                         best_sin_q1_for_q3_right_up,
                     ),
                     elsewhere_best_cost_q1_for_q3_right_up,
                     (
-                        ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right,
-                        turn_q1_for_q3_right_up, turn_q1_for_q3_squared_right_up, wrist_x, wrist_y,
+                        ahead_q1_before_q1_for_q3_right,
+                        cos_q1_before_q1_for_q3_right,
+                        sin_q1_before_q1_for_q3_right,
+                        turn_q1_for_q3_right_up,
+                        turn_q1_for_q3_squared_right_up,
+                        wrist_x,
+                        wrist_y,
                     ),
                 )
-                (
-                    best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
-                    best_sin_q1_for_q3_right_up,
-                ) = found
 
                 def elsewhere_ahead_q1_right_up(
-                    best_ahead_q1_for_q3_right_up: Real, best_cos_q1_for_q3_right_up: Real, best_sin_q1_for_q3_right_up: Real,
+                    best_ahead_q1_for_q3_right_up: Real,
+                    best_cos_q1_for_q3_right_up: Real,
+                    best_sin_q1_for_q3_right_up: Real,
                 ) -> Reals:
-                    ahead_q1_right_up = best_ahead_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
-                    cos_q1_right_up = best_cos_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
-                    sin_q1_right_up = best_sin_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
+                    ahead_q1_right_up = (
+                        best_ahead_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
+                    )
+                    cos_q1_right_up = (
+                        best_cos_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
+                    )
+                    sin_q1_right_up = (
+                        best_sin_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
+                    )
                     return (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up)
 
-                ahead_q1_right_up = ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                ahead_q1_right_up = (
+                    ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                )
                 cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
                 sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
                 ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up = elsewhere(
@@ -2654,22 +3014,48 @@ class ArrayPrograms(Programs):
                 (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up),
                 elsewhere_ahead_q1_right_up,
                 (
-                    ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, cos_q5_before_q1_for_q3_right,
-                    cos_q6_rate_q1_for_q3_right_up, r21_from_q1_before_q6_before_q1_for_q3_right_up,
-                    r21_from_q1_rate_q1_for_q3_right, r22_from_q1_rate_q1_for_q3_right, r23_from_q1_rate_q1_for_q3_right,
-                    r31, r32, r33, radius_q6_before_q1_for_q3_right, radius_q6_rate_q1_for_q3_right,
-                    sin_q1_before_q1_for_q3_right, sin_q6_rate_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up,
-                    swept_cost_q1_for_q3_right_up, swept_sin_q1_for_q3_right_up, value_q1_for_q3_right_up, wrist_x,
-                    wrist_x_from_q1_before_q1_for_q3_right_up, wrist_y, wrist_y_from_q1_before_q1_for_q3_right_up,
+                    ahead_q1_before_q1_for_q3_right,
+                    cos_q1_before_q1_for_q3_right,
+                    cos_q5_before_q1_for_q3_right,
+                    cos_q6_rate_q1_for_q3_right_up,
+                    r21_from_q1_before_q6_before_q1_for_q3_right_up,
+                    r21_from_q1_rate_q1_for_q3_right,
+                    r22_from_q1_rate_q1_for_q3_right,
+                    r23_from_q1_rate_q1_for_q3_right,
+                    r31,
+                    r32,
+                    r33,
+                    radius_q6_before_q1_for_q3_right,
+                    radius_q6_rate_q1_for_q3_right,
+                    sin_q1_before_q1_for_q3_right,
+                    sin_q6_rate_q1_for_q3_right_up,
+                    swept_cos_q1_for_q3_right_up,
+                    swept_cost_q1_for_q3_right_up,
+                    swept_sin_q1_for_q3_right_up,
+                    value_q1_for_q3_right_up,
+                    wrist_x,
+                    wrist_x_from_q1_before_q1_for_q3_right_up,
+                    wrist_y,
+                    wrist_y_from_q1_before_q1_for_q3_right_up,
                 ),
             )
             return (
-                ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down, ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up,
-                ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down, ahead_q1_right_up, cos_q1_right_up,
+                ahead_q1_left_down,
+                cos_q1_left_down,
+                sin_q1_left_down,
+                ahead_q1_left_up,
+                cos_q1_left_up,
+                sin_q1_left_up,
+                ahead_q1_right_down,
+                cos_q1_right_down,
+                sin_q1_right_down,
+                ahead_q1_right_up,
+                cos_q1_right_up,
                 sin_q1_right_up,
             )
 
-        ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+        # turned within rounding, where the rest can be reached
+        ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right
         cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
         sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
         ahead_q1_left_up = ahead_q1_left_down  # turned within rounding, where the rest can be reached
@@ -2681,37 +3067,71 @@ class ArrayPrograms(Programs):
         ahead_q1_right_up = -ahead_q1_left_down  # turned within rounding, where the rest can be reached
         cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
         sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
-        found = elsewhere(
+        (
+            ahead_q1_left_down,
+            cos_q1_left_down,
+            sin_q1_left_down,
+            ahead_q1_left_up,
+            cos_q1_left_up,
+            sin_q1_left_up,
+            ahead_q1_right_down,
+            cos_q1_right_down,
+            sin_q1_right_down,
+            ahead_q1_right_up,
+            cos_q1_right_up,
+            sin_q1_right_up,
+        ) = elsewhere(
             ahead_squared_q1 > machine_scale_squared_times_plane,
             (
-                ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down, ahead_q1_left_up, cos_q1_left_up,
-                sin_q1_left_up, ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down, ahead_q1_right_up,
-                cos_q1_right_up, sin_q1_right_up,
+                ahead_q1_left_down,
+                cos_q1_left_down,
+                sin_q1_left_down,
+                ahead_q1_left_up,
+                cos_q1_left_up,
+                sin_q1_left_up,
+                ahead_q1_right_down,
+                cos_q1_right_down,
+                sin_q1_right_down,
+                ahead_q1_right_up,
+                cos_q1_right_up,
+                sin_q1_right_up,
             ),
             elsewhere_ahead_q1_left_down,
             (
-                ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
-                distance_q1, r11, r12, r13, r21, r22, r23, r31, r32, r33, ref_a6, sin_q1_before_q1_for_q3_left,
-                sin_q1_before_q1_for_q3_right, wrist_x, wrist_y, wrist_y_from_q1_fixed, wrist_z,
+                ahead_q1_before_q1_for_q3_right,
+                cos_q1_before_q1_for_q3_left,
+                cos_q1_before_q1_for_q3_right,
+                distance_q1,
+                r11,
+                r12,
+                r13,
+                r21,
+                r22,
+                r23,
+                r31,
+                r32,
+                r33,
+                ref_a6,
+                sin_q1_before_q1_for_q3_left,
+                sin_q1_before_q1_for_q3_right,
+                wrist_x,
+                wrist_y,
+                wrist_y_from_q1_fixed,
+                wrist_z,
             ),
         )
-        (
-            ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down, ahead_q1_left_up, cos_q1_left_up,
-            sin_q1_left_up, ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down, ahead_q1_right_up,
-            cos_q1_right_up, sin_q1_right_up,
-        ) = found
         # q5: linear pair in the q6 radius and r32 equations
-        cos_q5_left_down = r13*sin_q1_left_down - r23*cos_q1_left_down
-        r21_from_q1_left_down = r21*cos_q1_left_down - r11*sin_q1_left_down
-        r22_from_q1_left_down = r22*cos_q1_left_down - r12*sin_q1_left_down
+        cos_q5_left_down = r13 * sin_q1_left_down - r23 * cos_q1_left_down
+        r21_from_q1_left_down = r21 * cos_q1_left_down - r11 * sin_q1_left_down
+        r22_from_q1_left_down = r22 * cos_q1_left_down - r12 * sin_q1_left_down
         # q6: direction and distance of a point
         radius_q6_left_down = sqrt(
-            r21_from_q1_left_down*r21_from_q1_left_down + r22_from_q1_left_down*r22_from_q1_left_down
+            r21_from_q1_left_down * r21_from_q1_left_down + r22_from_q1_left_down * r22_from_q1_left_down
         )
-        q6_radius_of_q5_times_r33_left_down = r33*radius_q6_left_down
+        q6_radius_of_q5_times_r33_left_down = r33 * radius_q6_left_down
 
         def elsewhere_cos_q6_before_q6_of_q3_left_down(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            free_a6 = (ref_a6 - offset_a6) * DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
             cos_q6_before_q6_of_q3_left_down = cos_of_free_a6  # its reference where it is free
@@ -2719,8 +3139,8 @@ class ArrayPrograms(Programs):
             return (cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down)
 
         # its reference where it is free
-        cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left_down/radius_q6_left_down
-        sin_q6_before_q6_of_q3_left_down = r22_from_q1_left_down/radius_q6_left_down
+        cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left_down / radius_q6_left_down
+        sin_q6_before_q6_of_q3_left_down = r22_from_q1_left_down / radius_q6_left_down
         cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down = elsewhere(
             radius_q6_left_down > 1e-11,
             (cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down),
@@ -2728,56 +3148,70 @@ class ArrayPrograms(Programs):
             (ref_a6,),
         )
         r21_from_q1_before_q6_before_q6_of_q3_left_down = (
-            r31*cos_q6_before_q6_of_q3_left_down - r32*sin_q6_before_q6_of_q3_left_down
+            r31 * cos_q6_before_q6_of_q3_left_down - r32 * sin_q6_before_q6_of_q3_left_down
         )
         r21_from_q1_before_q56_before_q6_of_q3_left_down = (
-            r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left_down - q6_radius_of_q5_times_r33_left_down
+            r21_from_q1_before_q6_before_q6_of_q3_left_down * cos_q5_left_down - q6_radius_of_q5_times_r33_left_down
         )
         wrist_x_from_q1_before_q6_of_q3_left_down = (
-            ahead_q1_left_down - d5*r21_from_q1_before_q56_before_q6_of_q3_left_down
+            ahead_q1_left_down - d5 * r21_from_q1_before_q56_before_q6_of_q3_left_down
         )
         r22_from_q1_before_q6_before_q6_of_q3_left_down = (
-            r32*cos_q6_before_q6_of_q3_left_down + r31*sin_q6_before_q6_of_q3_left_down
+            r32 * cos_q6_before_q6_of_q3_left_down + r31 * sin_q6_before_q6_of_q3_left_down
         )
         wrist_y_from_q1_before_q6_of_q3_left_down = (
-            wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_left_down
+            wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3_left_down
         )
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_left_down = (
-            wrist_x_from_q1_before_q6_of_q3_left_down*wrist_x_from_q1_before_q6_of_q3_left_down
-            + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down
+            wrist_x_from_q1_before_q6_of_q3_left_down * wrist_x_from_q1_before_q6_of_q3_left_down
+            + wrist_y_from_q1_before_q6_of_q3_left_down * wrist_y_from_q1_before_q6_of_q3_left_down
             - a2_squared_plus_a3_squared
         )
         size_of_value_q6_of_q3_left_down = absolute(value_q6_of_q3_left_down)
 
         def elsewhere_cos_q6_left_down(
-            ahead_q1_left_down: Real, cos_q5_left_down: Real, cos_q6_before_q6_of_q3_left_down: Real,
-            q6_radius_of_q5_times_r33_left_down: Real, r31: Real, r32: Real, radius_q6_left_down: Real,
-            sin_q6_before_q6_of_q3_left_down: Real, size_of_value_q6_of_q3_left_down: Real,
-            value_q6_of_q3_left_down: Real, wrist_y_from_q1_fixed: Real,
+            ahead_q1_left_down: Real,
+            cos_q5_left_down: Real,
+            cos_q6_before_q6_of_q3_left_down: Real,
+            q6_radius_of_q5_times_r33_left_down: Real,
+            r31: Real,
+            r32: Real,
+            radius_q6_left_down: Real,
+            sin_q6_before_q6_of_q3_left_down: Real,
+            size_of_value_q6_of_q3_left_down: Real,
+            value_q6_of_q3_left_down: Real,
+            wrist_y_from_q1_fixed: Real,
         ) -> Reals:
-            wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_across = d5 * r31
+            wrist_y_from_q1_along = d5 * r32
 
             def elsewhere_cos_q6_left_down(
-                ahead_q1_left_down: Real, cos_q5_left_down: Real, cos_q6_before_q6_of_q3_left_down: Real,
-                q6_radius_of_q5_times_r33_left_down: Real, radius_q6_left_down: Real,
-                sin_q6_before_q6_of_q3_left_down: Real, value_q6_of_q3_left_down: Real, wrist_y_from_q1_across: Real,
-                wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
+                ahead_q1_left_down: Real,
+                cos_q5_left_down: Real,
+                cos_q6_before_q6_of_q3_left_down: Real,
+                q6_radius_of_q5_times_r33_left_down: Real,
+                radius_q6_left_down: Real,
+                sin_q6_before_q6_of_q3_left_down: Real,
+                value_q6_of_q3_left_down: Real,
+                wrist_y_from_q1_across: Real,
+                wrist_y_from_q1_along: Real,
+                wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_left_down = ahead_q1_left_down + d5*q6_radius_of_q5_times_r33_left_down
-                wrist_x_from_q1_along_left_down = -wrist_y_from_q1_across*cos_q5_left_down
+                wrist_x_from_q1_fixed_left_down = ahead_q1_left_down + d5 * q6_radius_of_q5_times_r33_left_down
+                wrist_x_from_q1_along_left_down = -wrist_y_from_q1_across * cos_q5_left_down
                 along_q6_of_q3_left_down = (
-                    2.0*wrist_x_from_q1_along_left_down*wrist_x_from_q1_fixed_left_down
-                    + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+                    2.0 * wrist_x_from_q1_along_left_down * wrist_x_from_q1_fixed_left_down
+                    + 2.0 * wrist_y_from_q1_along * wrist_y_from_q1_fixed
                 )
-                wrist_x_from_q1_across_left_down = wrist_y_from_q1_along*cos_q5_left_down
+                wrist_x_from_q1_across_left_down = wrist_y_from_q1_along * cos_q5_left_down
                 across_q6_of_q3_left_down = (
-                    2.0*wrist_x_from_q1_across_left_down*wrist_x_from_q1_fixed_left_down
-                    + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                    2.0 * wrist_x_from_q1_across_left_down * wrist_x_from_q1_fixed_left_down
+                    + 2.0 * wrist_y_from_q1_across * wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3_left_down = sqrt(
-                    across_q6_of_q3_left_down*across_q6_of_q3_left_down + along_q6_of_q3_left_down*along_q6_of_q3_left_down
+                    across_q6_of_q3_left_down * across_q6_of_q3_left_down
+                    + along_q6_of_q3_left_down * along_q6_of_q3_left_down
                 )
 
                 def elsewhere_highest_q6_of_q3_left_down() -> Reals:
@@ -2786,17 +3220,22 @@ class ArrayPrograms(Programs):
                     return (highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down)
 
                 level_q6_of_q3_left_down = (
-                    value_q6_of_q3_left_down - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
-                    - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down
+                    value_q6_of_q3_left_down
+                    - across_q6_of_q3_left_down * sin_q6_before_q6_of_q3_left_down
+                    - along_q6_of_q3_left_down * cos_q6_before_q6_of_q3_left_down
                 )
-                part_of_highest_q6_of_q3_left_down = (size_q1_for_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down
+                part_of_highest_q6_of_q3_left_down = (
+                    size_q1_for_q3 - level_q6_of_q3_left_down
+                ) / swing_q6_of_q3_left_down
                 # the arc: cosines from its centre
                 highest_q6_of_q3_left_down = select(
                     part_of_highest_q6_of_q3_left_down > 1.0,
                     1.0,
                     select(part_of_highest_q6_of_q3_left_down < -1.0, -1.0, part_of_highest_q6_of_q3_left_down),
                 )
-                part_of_lowest_q6_of_q3_left_down = (level_q6_of_q3_left_down + size_q1_for_q3)/swing_q6_of_q3_left_down
+                part_of_lowest_q6_of_q3_left_down = (
+                    level_q6_of_q3_left_down + size_q1_for_q3
+                ) / swing_q6_of_q3_left_down
                 lowest_q6_of_q3_left_down = select(
                     -part_of_lowest_q6_of_q3_left_down > 1.0,
                     1.0,
@@ -2809,30 +3248,27 @@ class ArrayPrograms(Programs):
                     (),
                 )
                 near_q6_of_q3_left_down = atan2(
-                    root((1.0 - highest_q6_of_q3_left_down)*(1.0 + highest_q6_of_q3_left_down)),
+                    root((1.0 - highest_q6_of_q3_left_down) * (1.0 + highest_q6_of_q3_left_down)),
                     highest_q6_of_q3_left_down,
                 )
                 far_q6_of_q3_left_down = atan2(
-                    root((1.0 - lowest_q6_of_q3_left_down)*(1.0 + lowest_q6_of_q3_left_down)),
+                    root((1.0 - lowest_q6_of_q3_left_down) * (1.0 + lowest_q6_of_q3_left_down)),
                     lowest_q6_of_q3_left_down,
                 )
                 centre_q6_of_q3_left_down = atan2(across_q6_of_q3_left_down, along_q6_of_q3_left_down)
                 angle_q6_of_q3_left_down = atan2(sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_down)
                 side_q6_of_q3_left_down = select(
-                    (
-                        along_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
-                        - across_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down >= 0.0
-                    ),
+                    along_q6_of_q3_left_down * sin_q6_before_q6_of_q3_left_down
+                    - across_q6_of_q3_left_down * cos_q6_before_q6_of_q3_left_down
+                    >= 0.0,
                     1.0,
                     -1.0,
                 )
                 moved_q6_of_q3_left_down = nearest_on_arc(
                     angle_q6_of_q3_left_down,
-                    (
-                        centre_q6_of_q3_left_down
-                        + 0.5*(far_q6_of_q3_left_down + near_q6_of_q3_left_down)*side_q6_of_q3_left_down
-                    ),
-                    0.5*far_q6_of_q3_left_down - 0.5*near_q6_of_q3_left_down,
+                    centre_q6_of_q3_left_down
+                    + 0.5 * (far_q6_of_q3_left_down + near_q6_of_q3_left_down) * side_q6_of_q3_left_down,
+                    0.5 * far_q6_of_q3_left_down - 0.5 * near_q6_of_q3_left_down,
                 )
                 cos_q6_after_q6_of_q3_left_down = cos(moved_q6_of_q3_left_down)
                 sin_q6_after_q6_of_q3_left_down = sin(moved_q6_of_q3_left_down)
@@ -2841,15 +3277,15 @@ class ArrayPrograms(Programs):
                 # what the motion changes of the pose
                 cost_q6_of_q3_left_down = (
                     sqrt(
-                        part_of_cost_q6_of_q3_2_left_down*part_of_cost_q6_of_q3_2_left_down
-                        + part_of_cost_q6_of_q3_left_down*part_of_cost_q6_of_q3_left_down
+                        part_of_cost_q6_of_q3_2_left_down * part_of_cost_q6_of_q3_2_left_down
+                        + part_of_cost_q6_of_q3_left_down * part_of_cost_q6_of_q3_left_down
                     )
-                    *radius_q6_left_down
+                    * radius_q6_left_down
                 )
                 stays_q6_of_q3_left_down = (cost_q6_of_q3_left_down > 1e-12) & (radius_q6_left_down > 1e-11)
 
                 def elsewhere_cos_q6_left_down(
-                    cos_q6_after_q6_of_q3_left_down: Real, sin_q6_after_q6_of_q3_left_down: Real,
+                    cos_q6_after_q6_of_q3_left_down: Real, sin_q6_after_q6_of_q3_left_down: Real
                 ) -> Reals:
                     cos_q6_left_down = cos_q6_after_q6_of_q3_left_down  # kept where the rest can be reached
                     sin_q6_left_down = sin_q6_after_q6_of_q3_left_down  # kept where the rest can be reached
@@ -2872,9 +3308,16 @@ class ArrayPrograms(Programs):
                 (cos_q6_left_down, sin_q6_left_down),
                 elsewhere_cos_q6_left_down,
                 (
-                    ahead_q1_left_down, cos_q5_left_down, cos_q6_before_q6_of_q3_left_down,
-                    q6_radius_of_q5_times_r33_left_down, radius_q6_left_down, sin_q6_before_q6_of_q3_left_down,
-                    value_q6_of_q3_left_down, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                    ahead_q1_left_down,
+                    cos_q5_left_down,
+                    cos_q6_before_q6_of_q3_left_down,
+                    q6_radius_of_q5_times_r33_left_down,
+                    radius_q6_left_down,
+                    sin_q6_before_q6_of_q3_left_down,
+                    value_q6_of_q3_left_down,
+                    wrist_y_from_q1_across,
+                    wrist_y_from_q1_along,
+                    wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6_left_down, sin_q6_left_down)
@@ -2886,43 +3329,52 @@ class ArrayPrograms(Programs):
             (cos_q6_left_down, sin_q6_left_down),
             elsewhere_cos_q6_left_down,
             (
-                ahead_q1_left_down, cos_q5_left_down, cos_q6_before_q6_of_q3_left_down,
-                q6_radius_of_q5_times_r33_left_down, r31, r32, radius_q6_left_down, sin_q6_before_q6_of_q3_left_down,
-                size_of_value_q6_of_q3_left_down, value_q6_of_q3_left_down, wrist_y_from_q1_fixed,
+                ahead_q1_left_down,
+                cos_q5_left_down,
+                cos_q6_before_q6_of_q3_left_down,
+                q6_radius_of_q5_times_r33_left_down,
+                r31,
+                r32,
+                radius_q6_left_down,
+                sin_q6_before_q6_of_q3_left_down,
+                size_of_value_q6_of_q3_left_down,
+                value_q6_of_q3_left_down,
+                wrist_y_from_q1_fixed,
             ),
         )
-        r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
+        r21_from_q1_before_q6_left_down = r31 * cos_q6_left_down - r32 * sin_q6_left_down
         r21_from_q1_before_q56_left_down = (
-            r21_from_q1_before_q6_left_down*cos_q5_left_down - q6_radius_of_q5_times_r33_left_down
+            r21_from_q1_before_q6_left_down * cos_q5_left_down - q6_radius_of_q5_times_r33_left_down
         )
         # what the unknown links must span
-        wrist_x_from_q1_left_down = ahead_q1_left_down - d5*r21_from_q1_before_q56_left_down
-        r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
+        wrist_x_from_q1_left_down = ahead_q1_left_down - d5 * r21_from_q1_before_q56_left_down
+        r22_from_q1_before_q6_left_down = r32 * cos_q6_left_down + r31 * sin_q6_left_down
         # what the unknown links must span
-        wrist_y_from_q1_left_down = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_left_down
+        wrist_y_from_q1_left_down = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_left_down
         reach_left_down = sqrt(
-            wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
+            wrist_x_from_q1_left_down * wrist_x_from_q1_left_down
+            + wrist_y_from_q1_left_down * wrist_y_from_q1_left_down
         )
         # 1 - cosine, times the scale
-        one_less_cos_q3_left_down = (a2_plus_a3 + reach_left_down)*(a2_plus_a3 - reach_left_down)
+        one_less_cos_q3_left_down = (a2_plus_a3 + reach_left_down) * (a2_plus_a3 - reach_left_down)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_left_down = (reach_left_down - a2_minus_a3)*(a2_minus_a3 + reach_left_down)
+        one_plus_cos_q3_left_down = (reach_left_down - a2_minus_a3) * (a2_minus_a3 + reach_left_down)
         # the square of sine times scale
-        sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down
+        sine_square_q3_left_down = one_less_cos_q3_left_down * one_plus_cos_q3_left_down
         # q3: out of reach
         refusal_left_down = select(sine_square_q3_left_down >= -scale_q3_squared_times_rounding, 0, 3)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         # A1: its turn
         axis_a1_left_down = nearest_period(offset_a1 + degrees(sin_q1_left_down, cos_q1_left_down), near_a1)
         # twice the scale, with the rounding of its parts
         both_q3_left_down = one_less_cos_q3_left_down + one_plus_cos_q3_left_down
         sum_q3_left_down = select(absolute(both_q3_left_down) > 0.0, both_q3_left_down, 1.0)
-        cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)/sum_q3_left_down
-        sin_q3_left_up_down = 2.0*root(sine_square_q3_left_down)/absolute(sum_q3_left_down)
+        cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down) / sum_q3_left_down
+        sin_q3_left_up_down = 2.0 * root(sine_square_q3_left_down) / absolute(sum_q3_left_down)
 
         def elsewhere_direction_x_q2_left_up_down(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
             direction_x_q2_left_up_down = cos(free_a2)
             direction_y_q2_left_up_down = sin(free_a2)
@@ -2930,79 +3382,85 @@ class ArrayPrograms(Programs):
             direction_x_q2_left_down_down = direction_x_q2_left_up_down
             direction_y_q2_left_down_down = direction_y_q2_left_up_down
             return (
-                direction_x_q2_left_up_down, direction_y_q2_left_up_down, direction_x_q2_left_down_down,
+                direction_x_q2_left_up_down,
+                direction_y_q2_left_up_down,
+                direction_x_q2_left_down_down,
                 direction_y_q2_left_down_down,
             )
 
-        arm_along_q2_left_down = a2 + a3*cos_q3_left_down
-        arm_across_q2_left_up_down = a3*sin_q3_left_up_down
+        arm_along_q2_left_down = a2 + a3 * cos_q3_left_down
+        arm_across_q2_left_up_down = a3 * sin_q3_left_up_down
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         direction_x_q2_left_up_down = (
-            arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
+            arm_across_q2_left_up_down * wrist_y_from_q1_left_down + arm_along_q2_left_down * wrist_x_from_q1_left_down
         )
         direction_y_q2_left_up_down = (
-            arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
+            arm_along_q2_left_down * wrist_y_from_q1_left_down - arm_across_q2_left_up_down * wrist_x_from_q1_left_down
         )
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         direction_x_q2_left_down_down = (
-            arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
+            arm_along_q2_left_down * wrist_x_from_q1_left_down - arm_across_q2_left_up_down * wrist_y_from_q1_left_down
         )
         direction_y_q2_left_down_down = (
-            arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
+            arm_across_q2_left_up_down * wrist_x_from_q1_left_down + arm_along_q2_left_down * wrist_y_from_q1_left_down
         )
-        found = elsewhere(
+        (
+            direction_x_q2_left_up_down,
+            direction_y_q2_left_up_down,
+            direction_x_q2_left_down_down,
+            direction_y_q2_left_down_down,
+        ) = elsewhere(
             reach_left_down > machine_scale_times_free_angle,
             (
-                direction_x_q2_left_up_down, direction_y_q2_left_up_down, direction_x_q2_left_down_down,
+                direction_x_q2_left_up_down,
+                direction_y_q2_left_up_down,
+                direction_x_q2_left_down_down,
                 direction_y_q2_left_down_down,
             ),
             elsewhere_direction_x_q2_left_up_down,
             (ref_a2,),
         )
-        (
-            direction_x_q2_left_up_down, direction_y_q2_left_up_down, direction_x_q2_left_down_down,
-            direction_y_q2_left_down_down,
-        ) = found
         angle_q2_left_up_down = atan2(direction_y_q2_left_up_down, direction_x_q2_left_up_down)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2_left_up_down = nearest_period(offset_a2 + angle_q2_left_up_down/DEGREE, near_a2)  # A2: its turn
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        axis_a2_left_up_down = nearest_period(offset_a2 + angle_q2_left_up_down / DEGREE, near_a2)  # A2: its turn
         angle_q3_left_up_down = atan2(sin_q3_left_up_down, cos_q3_left_down)
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3_left_up_down = nearest_period(offset_a3 + angle_q3_left_up_down/DEGREE, near_a3)  # A3: its turn
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        axis_a3_left_up_down = nearest_period(offset_a3 + angle_q3_left_up_down / DEGREE, near_a3)  # A3: its turn
         angle_with_q4_left_down = atan2(r21_from_q1_before_q56_left_down, r22_from_q1_before_q6_left_down)
         open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_left_up_down = nearest_period(
-            offset_a4 + (angle_with_q4_left_down - angle_q2_left_up_down - angle_q3_left_up_down)/DEGREE, near_a4,
+            offset_a4 + (angle_with_q4_left_down - angle_q2_left_up_down - angle_q3_left_up_down) / DEGREE, near_a4
         )
         open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
+        near_a5 = select(turn_a5 != 0, 360.0 * select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         # A5: its turn
         axis_a5_left_down = nearest_period(offset_a5 + degrees(radius_q6_left_down, cos_q5_left_down), near_a5)
         open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
+        near_a6 = select(turn_a6 != 0, 360.0 * select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         # A6: its turn
         axis_a6_left_down = nearest_period(offset_a6 + degrees(sin_q6_left_down, cos_q6_left_down), near_a6)
-        cos_q5_left_up = r13*sin_q1_left_up - r23*cos_q1_left_up  # q5: linear pair in the q6 radius and r32 equations
-        r21_from_q1_left_up = r21*cos_q1_left_up - r11*sin_q1_left_up
-        r22_from_q1_left_up = r22*cos_q1_left_up - r12*sin_q1_left_up
+        # q5: linear pair in the q6 radius and r32 equations
+        cos_q5_left_up = r13 * sin_q1_left_up - r23 * cos_q1_left_up
+        r21_from_q1_left_up = r21 * cos_q1_left_up - r11 * sin_q1_left_up
+        r22_from_q1_left_up = r22 * cos_q1_left_up - r12 * sin_q1_left_up
         # q6: direction and distance of a point
-        radius_q6_left_up = sqrt(r21_from_q1_left_up*r21_from_q1_left_up + r22_from_q1_left_up*r22_from_q1_left_up)
-        q6_radius_of_q5_times_r33_left_up = -r33*radius_q6_left_up
+        radius_q6_left_up = sqrt(r21_from_q1_left_up * r21_from_q1_left_up + r22_from_q1_left_up * r22_from_q1_left_up)
+        q6_radius_of_q5_times_r33_left_up = -r33 * radius_q6_left_up
 
         def elsewhere_cos_q6_before_q6_of_q3_left_up(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            free_a6 = (ref_a6 - offset_a6) * DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
             cos_q6_before_q6_of_q3_left_up = cos_of_free_a6  # its reference where it is free
             sin_q6_before_q6_of_q3_left_up = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up)
 
-        cos_q6_before_q6_of_q3_left_up = r21_from_q1_left_up/radius_q6_left_up  # its reference where it is free
-        sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left_up/radius_q6_left_up
+        cos_q6_before_q6_of_q3_left_up = r21_from_q1_left_up / radius_q6_left_up  # its reference where it is free
+        sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left_up / radius_q6_left_up
         cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up = elsewhere(
             radius_q6_left_up > 1e-11,
             (cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up),
@@ -3010,54 +3468,67 @@ class ArrayPrograms(Programs):
             (ref_a6,),
         )
         r21_from_q1_before_q6_before_q6_of_q3_left_up = (
-            r31*cos_q6_before_q6_of_q3_left_up - r32*sin_q6_before_q6_of_q3_left_up
+            r31 * cos_q6_before_q6_of_q3_left_up - r32 * sin_q6_before_q6_of_q3_left_up
         )
         r21_from_q1_before_q56_before_q6_of_q3_left_up = (
-            r21_from_q1_before_q6_before_q6_of_q3_left_up*cos_q5_left_up - q6_radius_of_q5_times_r33_left_up
+            r21_from_q1_before_q6_before_q6_of_q3_left_up * cos_q5_left_up - q6_radius_of_q5_times_r33_left_up
         )
-        wrist_x_from_q1_before_q6_of_q3_left_up = ahead_q1_left_up - d5*r21_from_q1_before_q56_before_q6_of_q3_left_up
+        wrist_x_from_q1_before_q6_of_q3_left_up = ahead_q1_left_up - d5 * r21_from_q1_before_q56_before_q6_of_q3_left_up
         r22_from_q1_before_q6_before_q6_of_q3_left_up = (
-            r32*cos_q6_before_q6_of_q3_left_up + r31*sin_q6_before_q6_of_q3_left_up
+            r32 * cos_q6_before_q6_of_q3_left_up + r31 * sin_q6_before_q6_of_q3_left_up
         )
         wrist_y_from_q1_before_q6_of_q3_left_up = (
-            wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_left_up
+            wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3_left_up
         )
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_left_up = (
-            wrist_x_from_q1_before_q6_of_q3_left_up*wrist_x_from_q1_before_q6_of_q3_left_up
-            + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up
+            wrist_x_from_q1_before_q6_of_q3_left_up * wrist_x_from_q1_before_q6_of_q3_left_up
+            + wrist_y_from_q1_before_q6_of_q3_left_up * wrist_y_from_q1_before_q6_of_q3_left_up
             - a2_squared_plus_a3_squared
         )
         size_of_value_q6_of_q3_left_up = absolute(value_q6_of_q3_left_up)
 
         def elsewhere_cos_q6_left_up(
-            ahead_q1_left_up: Real, cos_q5_left_up: Real, cos_q6_before_q6_of_q3_left_up: Real,
-            q6_radius_of_q5_times_r33_left_up: Real, r31: Real, r32: Real, radius_q6_left_up: Real,
-            sin_q6_before_q6_of_q3_left_up: Real, size_of_value_q6_of_q3_left_up: Real, value_q6_of_q3_left_up: Real,
+            ahead_q1_left_up: Real,
+            cos_q5_left_up: Real,
+            cos_q6_before_q6_of_q3_left_up: Real,
+            q6_radius_of_q5_times_r33_left_up: Real,
+            r31: Real,
+            r32: Real,
+            radius_q6_left_up: Real,
+            sin_q6_before_q6_of_q3_left_up: Real,
+            size_of_value_q6_of_q3_left_up: Real,
+            value_q6_of_q3_left_up: Real,
             wrist_y_from_q1_fixed: Real,
         ) -> Reals:
-            wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_across = d5 * r31
+            wrist_y_from_q1_along = d5 * r32
 
             def elsewhere_cos_q6_left_up(
-                ahead_q1_left_up: Real, cos_q5_left_up: Real, cos_q6_before_q6_of_q3_left_up: Real,
-                q6_radius_of_q5_times_r33_left_up: Real, radius_q6_left_up: Real, sin_q6_before_q6_of_q3_left_up: Real,
-                value_q6_of_q3_left_up: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+                ahead_q1_left_up: Real,
+                cos_q5_left_up: Real,
+                cos_q6_before_q6_of_q3_left_up: Real,
+                q6_radius_of_q5_times_r33_left_up: Real,
+                radius_q6_left_up: Real,
+                sin_q6_before_q6_of_q3_left_up: Real,
+                value_q6_of_q3_left_up: Real,
+                wrist_y_from_q1_across: Real,
+                wrist_y_from_q1_along: Real,
                 wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_left_up = ahead_q1_left_up + d5*q6_radius_of_q5_times_r33_left_up
-                wrist_x_from_q1_along_left_up = -wrist_y_from_q1_across*cos_q5_left_up
+                wrist_x_from_q1_fixed_left_up = ahead_q1_left_up + d5 * q6_radius_of_q5_times_r33_left_up
+                wrist_x_from_q1_along_left_up = -wrist_y_from_q1_across * cos_q5_left_up
                 along_q6_of_q3_left_up = (
-                    2.0*wrist_x_from_q1_along_left_up*wrist_x_from_q1_fixed_left_up
-                    + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+                    2.0 * wrist_x_from_q1_along_left_up * wrist_x_from_q1_fixed_left_up
+                    + 2.0 * wrist_y_from_q1_along * wrist_y_from_q1_fixed
                 )
-                wrist_x_from_q1_across_left_up = wrist_y_from_q1_along*cos_q5_left_up
+                wrist_x_from_q1_across_left_up = wrist_y_from_q1_along * cos_q5_left_up
                 across_q6_of_q3_left_up = (
-                    2.0*wrist_x_from_q1_across_left_up*wrist_x_from_q1_fixed_left_up
-                    + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                    2.0 * wrist_x_from_q1_across_left_up * wrist_x_from_q1_fixed_left_up
+                    + 2.0 * wrist_y_from_q1_across * wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3_left_up = sqrt(
-                    across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
+                    across_q6_of_q3_left_up * across_q6_of_q3_left_up + along_q6_of_q3_left_up * along_q6_of_q3_left_up
                 )
 
                 def elsewhere_highest_q6_of_q3_left_up() -> Reals:
@@ -3066,17 +3537,18 @@ class ArrayPrograms(Programs):
                     return (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up)
 
                 level_q6_of_q3_left_up = (
-                    value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-                    - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
+                    value_q6_of_q3_left_up
+                    - across_q6_of_q3_left_up * sin_q6_before_q6_of_q3_left_up
+                    - along_q6_of_q3_left_up * cos_q6_before_q6_of_q3_left_up
                 )
-                part_of_highest_q6_of_q3_left_up = (size_q1_for_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up
+                part_of_highest_q6_of_q3_left_up = (size_q1_for_q3 - level_q6_of_q3_left_up) / swing_q6_of_q3_left_up
                 # the arc: cosines from its centre
                 highest_q6_of_q3_left_up = select(
                     part_of_highest_q6_of_q3_left_up > 1.0,
                     1.0,
                     select(part_of_highest_q6_of_q3_left_up < -1.0, -1.0, part_of_highest_q6_of_q3_left_up),
                 )
-                part_of_lowest_q6_of_q3_left_up = (level_q6_of_q3_left_up + size_q1_for_q3)/swing_q6_of_q3_left_up
+                part_of_lowest_q6_of_q3_left_up = (level_q6_of_q3_left_up + size_q1_for_q3) / swing_q6_of_q3_left_up
                 lowest_q6_of_q3_left_up = select(
                     -part_of_lowest_q6_of_q3_left_up > 1.0,
                     1.0,
@@ -3089,27 +3561,25 @@ class ArrayPrograms(Programs):
                     (),
                 )
                 near_q6_of_q3_left_up = atan2(
-                    root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
-                    highest_q6_of_q3_left_up,
+                    root((1.0 - highest_q6_of_q3_left_up) * (1.0 + highest_q6_of_q3_left_up)), highest_q6_of_q3_left_up
                 )
                 far_q6_of_q3_left_up = atan2(
-                    root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
-                    lowest_q6_of_q3_left_up,
+                    root((1.0 - lowest_q6_of_q3_left_up) * (1.0 + lowest_q6_of_q3_left_up)), lowest_q6_of_q3_left_up
                 )
                 centre_q6_of_q3_left_up = atan2(across_q6_of_q3_left_up, along_q6_of_q3_left_up)
                 angle_q6_of_q3_left_up = atan2(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_up)
                 side_q6_of_q3_left_up = select(
-                    (
-                        along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-                        - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
-                    ),
+                    along_q6_of_q3_left_up * sin_q6_before_q6_of_q3_left_up
+                    - across_q6_of_q3_left_up * cos_q6_before_q6_of_q3_left_up
+                    >= 0.0,
                     1.0,
                     -1.0,
                 )
                 moved_q6_of_q3_left_up = nearest_on_arc(
                     angle_q6_of_q3_left_up,
-                    (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
-                    0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
+                    centre_q6_of_q3_left_up
+                    + 0.5 * (far_q6_of_q3_left_up + near_q6_of_q3_left_up) * side_q6_of_q3_left_up,
+                    0.5 * far_q6_of_q3_left_up - 0.5 * near_q6_of_q3_left_up,
                 )
                 cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
                 sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
@@ -3118,15 +3588,15 @@ class ArrayPrograms(Programs):
                 # what the motion changes of the pose
                 cost_q6_of_q3_left_up = (
                     sqrt(
-                        part_of_cost_q6_of_q3_2_left_up*part_of_cost_q6_of_q3_2_left_up
-                        + part_of_cost_q6_of_q3_left_up*part_of_cost_q6_of_q3_left_up
+                        part_of_cost_q6_of_q3_2_left_up * part_of_cost_q6_of_q3_2_left_up
+                        + part_of_cost_q6_of_q3_left_up * part_of_cost_q6_of_q3_left_up
                     )
-                    *radius_q6_left_up
+                    * radius_q6_left_up
                 )
                 stays_q6_of_q3_left_up = (cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left_up > 1e-11)
 
                 def elsewhere_cos_q6_left_up(
-                    cos_q6_after_q6_of_q3_left_up: Real, sin_q6_after_q6_of_q3_left_up: Real,
+                    cos_q6_after_q6_of_q3_left_up: Real, sin_q6_after_q6_of_q3_left_up: Real
                 ) -> Reals:
                     cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # kept where the rest can be reached
                     sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # kept where the rest can be reached
@@ -3149,9 +3619,16 @@ class ArrayPrograms(Programs):
                 (cos_q6_left_up, sin_q6_left_up),
                 elsewhere_cos_q6_left_up,
                 (
-                    ahead_q1_left_up, cos_q5_left_up, cos_q6_before_q6_of_q3_left_up, q6_radius_of_q5_times_r33_left_up,
-                    radius_q6_left_up, sin_q6_before_q6_of_q3_left_up, value_q6_of_q3_left_up, wrist_y_from_q1_across,
-                    wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                    ahead_q1_left_up,
+                    cos_q5_left_up,
+                    cos_q6_before_q6_of_q3_left_up,
+                    q6_radius_of_q5_times_r33_left_up,
+                    radius_q6_left_up,
+                    sin_q6_before_q6_of_q3_left_up,
+                    value_q6_of_q3_left_up,
+                    wrist_y_from_q1_across,
+                    wrist_y_from_q1_along,
+                    wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6_left_up, sin_q6_left_up)
@@ -3163,38 +3640,48 @@ class ArrayPrograms(Programs):
             (cos_q6_left_up, sin_q6_left_up),
             elsewhere_cos_q6_left_up,
             (
-                ahead_q1_left_up, cos_q5_left_up, cos_q6_before_q6_of_q3_left_up, q6_radius_of_q5_times_r33_left_up,
-                r31, r32, radius_q6_left_up, sin_q6_before_q6_of_q3_left_up, size_of_value_q6_of_q3_left_up,
-                value_q6_of_q3_left_up, wrist_y_from_q1_fixed,
+                ahead_q1_left_up,
+                cos_q5_left_up,
+                cos_q6_before_q6_of_q3_left_up,
+                q6_radius_of_q5_times_r33_left_up,
+                r31,
+                r32,
+                radius_q6_left_up,
+                sin_q6_before_q6_of_q3_left_up,
+                size_of_value_q6_of_q3_left_up,
+                value_q6_of_q3_left_up,
+                wrist_y_from_q1_fixed,
             ),
         )
-        r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
+        r21_from_q1_before_q6_left_up = r31 * cos_q6_left_up - r32 * sin_q6_left_up
         r21_from_q1_before_q56_left_up = (
-            r21_from_q1_before_q6_left_up*cos_q5_left_up - q6_radius_of_q5_times_r33_left_up
+            r21_from_q1_before_q6_left_up * cos_q5_left_up - q6_radius_of_q5_times_r33_left_up
         )
         # what the unknown links must span
-        wrist_x_from_q1_left_up = ahead_q1_left_up - d5*r21_from_q1_before_q56_left_up
-        r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
+        wrist_x_from_q1_left_up = ahead_q1_left_up - d5 * r21_from_q1_before_q56_left_up
+        r22_from_q1_before_q6_left_up = r32 * cos_q6_left_up + r31 * sin_q6_left_up
         # what the unknown links must span
-        wrist_y_from_q1_left_up = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_left_up
+        wrist_y_from_q1_left_up = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_left_up
         reach_left_up = sqrt(
-            wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
+            wrist_x_from_q1_left_up * wrist_x_from_q1_left_up + wrist_y_from_q1_left_up * wrist_y_from_q1_left_up
         )
         # 1 - cosine, times the scale
-        one_less_cos_q3_left_up = (a2_plus_a3 + reach_left_up)*(a2_plus_a3 - reach_left_up)
+        one_less_cos_q3_left_up = (a2_plus_a3 + reach_left_up) * (a2_plus_a3 - reach_left_up)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up)
-        sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up  # the square of sine times scale
-        refusal_left_up = select(sine_square_q3_left_up >= -scale_q3_squared_times_rounding, 0, 3)  # q3: out of reach
-        axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)  # A1: its turn
+        one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3) * (a2_minus_a3 + reach_left_up)
+        sine_square_q3_left_up = one_less_cos_q3_left_up * one_plus_cos_q3_left_up  # the square of sine times scale
+        # q3: out of reach
+        refusal_left_up = select(sine_square_q3_left_up >= -scale_q3_squared_times_rounding, 0, 3)
+        # A1: its turn
+        axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)
         # twice the scale, with the rounding of its parts
         both_q3_left_up = one_less_cos_q3_left_up + one_plus_cos_q3_left_up
         sum_q3_left_up = select(absolute(both_q3_left_up) > 0.0, both_q3_left_up, 1.0)
-        cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)/sum_q3_left_up
-        sin_q3_left_up_up = 2.0*root(sine_square_q3_left_up)/absolute(sum_q3_left_up)
+        cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up) / sum_q3_left_up
+        sin_q3_left_up_up = 2.0 * root(sine_square_q3_left_up) / absolute(sum_q3_left_up)
 
         def elsewhere_direction_x_q2_left_up_up(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
             direction_x_q2_left_up_up = cos(free_a2)
             direction_y_q2_left_up_up = sin(free_a2)
@@ -3202,79 +3689,87 @@ class ArrayPrograms(Programs):
             direction_x_q2_left_down_up = direction_x_q2_left_up_up
             direction_y_q2_left_down_up = direction_y_q2_left_up_up
             return (
-                direction_x_q2_left_up_up, direction_y_q2_left_up_up, direction_x_q2_left_down_up,
+                direction_x_q2_left_up_up,
+                direction_y_q2_left_up_up,
+                direction_x_q2_left_down_up,
                 direction_y_q2_left_down_up,
             )
 
-        arm_along_q2_left_up = a2 + a3*cos_q3_left_up
-        arm_across_q2_left_up_up = a3*sin_q3_left_up_up
+        arm_along_q2_left_up = a2 + a3 * cos_q3_left_up
+        arm_across_q2_left_up_up = a3 * sin_q3_left_up_up
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         direction_x_q2_left_up_up = (
-            arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
+            arm_across_q2_left_up_up * wrist_y_from_q1_left_up + arm_along_q2_left_up * wrist_x_from_q1_left_up
         )
         direction_y_q2_left_up_up = (
-            arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
+            arm_along_q2_left_up * wrist_y_from_q1_left_up - arm_across_q2_left_up_up * wrist_x_from_q1_left_up
         )
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         direction_x_q2_left_down_up = (
-            arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
+            arm_along_q2_left_up * wrist_x_from_q1_left_up - arm_across_q2_left_up_up * wrist_y_from_q1_left_up
         )
         direction_y_q2_left_down_up = (
-            arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
+            arm_across_q2_left_up_up * wrist_x_from_q1_left_up + arm_along_q2_left_up * wrist_y_from_q1_left_up
         )
-        found = elsewhere(
+        (
+            direction_x_q2_left_up_up,
+            direction_y_q2_left_up_up,
+            direction_x_q2_left_down_up,
+            direction_y_q2_left_down_up,
+        ) = elsewhere(
             reach_left_up > machine_scale_times_free_angle,
             (
-                direction_x_q2_left_up_up, direction_y_q2_left_up_up, direction_x_q2_left_down_up,
+                direction_x_q2_left_up_up,
+                direction_y_q2_left_up_up,
+                direction_x_q2_left_down_up,
                 direction_y_q2_left_down_up,
             ),
             elsewhere_direction_x_q2_left_up_up,
             (ref_a2,),
         )
-        (
-            direction_x_q2_left_up_up, direction_y_q2_left_up_up, direction_x_q2_left_down_up,
-            direction_y_q2_left_down_up,
-        ) = found
         angle_q2_left_up_up = atan2(direction_y_q2_left_up_up, direction_x_q2_left_up_up)
-        axis_a2_left_up_up = nearest_period(offset_a2 + angle_q2_left_up_up/DEGREE, near_a2)  # A2: its turn
+        axis_a2_left_up_up = nearest_period(offset_a2 + angle_q2_left_up_up / DEGREE, near_a2)  # A2: its turn
         angle_q3_left_up_up = atan2(sin_q3_left_up_up, cos_q3_left_up)
-        axis_a3_left_up_up = nearest_period(offset_a3 + angle_q3_left_up_up/DEGREE, near_a3)  # A3: its turn
+        axis_a3_left_up_up = nearest_period(offset_a3 + angle_q3_left_up_up / DEGREE, near_a3)  # A3: its turn
         angle_with_q4_left_up = atan2(r21_from_q1_before_q56_left_up, r22_from_q1_before_q6_left_up)
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_left_up_up = nearest_period(
-            offset_a4 + (angle_with_q4_left_up - angle_q2_left_up_up - angle_q3_left_up_up)/DEGREE, near_a4,
+            offset_a4 + (angle_with_q4_left_up - angle_q2_left_up_up - angle_q3_left_up_up) / DEGREE, near_a4
         )
         # A5: its turn
         axis_a5_left_up = nearest_period(offset_a5 + degrees(-radius_q6_left_up, cos_q5_left_up), near_a5)
-        axis_a6_left_up = nearest_period(offset_a6 + degrees(sin_q6_left_up, cos_q6_left_up), near_a6)  # A6: its turn
+        # A6: its turn
+        axis_a6_left_up = nearest_period(offset_a6 + degrees(sin_q6_left_up, cos_q6_left_up), near_a6)
         angle_q2_left_down_down = atan2(direction_y_q2_left_down_down, direction_x_q2_left_down_down)
-        axis_a2_left_down_down = nearest_period(offset_a2 + angle_q2_left_down_down/DEGREE, near_a2)  # A2: its turn
+        # A2: its turn
+        axis_a2_left_down_down = nearest_period(offset_a2 + angle_q2_left_down_down / DEGREE, near_a2)
         angle_q3_left_down_down = atan2(-sin_q3_left_up_down, cos_q3_left_down)
-        axis_a3_left_down_down = nearest_period(offset_a3 + angle_q3_left_down_down/DEGREE, near_a3)  # A3: its turn
+        # A3: its turn
+        axis_a3_left_down_down = nearest_period(offset_a3 + angle_q3_left_down_down / DEGREE, near_a3)
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_left_down_down = nearest_period(
-            offset_a4 + (angle_with_q4_left_down - angle_q2_left_down_down - angle_q3_left_down_down)/DEGREE, near_a4,
+            offset_a4 + (angle_with_q4_left_down - angle_q2_left_down_down - angle_q3_left_down_down) / DEGREE, near_a4
         )
         angle_q2_left_down_up = atan2(direction_y_q2_left_down_up, direction_x_q2_left_down_up)
-        axis_a2_left_down_up = nearest_period(offset_a2 + angle_q2_left_down_up/DEGREE, near_a2)  # A2: its turn
+        axis_a2_left_down_up = nearest_period(offset_a2 + angle_q2_left_down_up / DEGREE, near_a2)  # A2: its turn
         angle_q3_left_down_up = atan2(-sin_q3_left_up_up, cos_q3_left_up)
-        axis_a3_left_down_up = nearest_period(offset_a3 + angle_q3_left_down_up/DEGREE, near_a3)  # A3: its turn
+        axis_a3_left_down_up = nearest_period(offset_a3 + angle_q3_left_down_up / DEGREE, near_a3)  # A3: its turn
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_left_down_up = nearest_period(
-            offset_a4 + (angle_with_q4_left_up - angle_q2_left_down_up - angle_q3_left_down_up)/DEGREE, near_a4,
+            offset_a4 + (angle_with_q4_left_up - angle_q2_left_down_up - angle_q3_left_down_up) / DEGREE, near_a4
         )
         # q5: linear pair in the q6 radius and r32 equations
-        cos_q5_right_down = r13*sin_q1_right_down - r23*cos_q1_right_down
-        r21_from_q1_right_down = r21*cos_q1_right_down - r11*sin_q1_right_down
-        r22_from_q1_right_down = r22*cos_q1_right_down - r12*sin_q1_right_down
+        cos_q5_right_down = r13 * sin_q1_right_down - r23 * cos_q1_right_down
+        r21_from_q1_right_down = r21 * cos_q1_right_down - r11 * sin_q1_right_down
+        r22_from_q1_right_down = r22 * cos_q1_right_down - r12 * sin_q1_right_down
         # q6: direction and distance of a point
         radius_q6_right_down = sqrt(
-            r21_from_q1_right_down*r21_from_q1_right_down + r22_from_q1_right_down*r22_from_q1_right_down
+            r21_from_q1_right_down * r21_from_q1_right_down + r22_from_q1_right_down * r22_from_q1_right_down
         )
-        q6_radius_of_q5_times_r33_right_down = r33*radius_q6_right_down
+        q6_radius_of_q5_times_r33_right_down = r33 * radius_q6_right_down
 
         def elsewhere_cos_q6_before_q6_of_q3_right_down(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            free_a6 = (ref_a6 - offset_a6) * DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
             cos_q6_before_q6_of_q3_right_down = cos_of_free_a6  # its reference where it is free
@@ -3282,8 +3777,8 @@ class ArrayPrograms(Programs):
             return (cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down)
 
         # its reference where it is free
-        cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right_down/radius_q6_right_down
-        sin_q6_before_q6_of_q3_right_down = r22_from_q1_right_down/radius_q6_right_down
+        cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right_down / radius_q6_right_down
+        sin_q6_before_q6_of_q3_right_down = r22_from_q1_right_down / radius_q6_right_down
         cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down = elsewhere(
             radius_q6_right_down > 1e-11,
             (cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down),
@@ -3291,57 +3786,70 @@ class ArrayPrograms(Programs):
             (ref_a6,),
         )
         r21_from_q1_before_q6_before_q6_of_q3_right_down = (
-            r31*cos_q6_before_q6_of_q3_right_down - r32*sin_q6_before_q6_of_q3_right_down
+            r31 * cos_q6_before_q6_of_q3_right_down - r32 * sin_q6_before_q6_of_q3_right_down
         )
         r21_from_q1_before_q56_before_q6_of_q3_right_down = (
-            r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right_down - q6_radius_of_q5_times_r33_right_down
+            r21_from_q1_before_q6_before_q6_of_q3_right_down * cos_q5_right_down - q6_radius_of_q5_times_r33_right_down
         )
         wrist_x_from_q1_before_q6_of_q3_right_down = (
-            ahead_q1_right_down - d5*r21_from_q1_before_q56_before_q6_of_q3_right_down
+            ahead_q1_right_down - d5 * r21_from_q1_before_q56_before_q6_of_q3_right_down
         )
         r22_from_q1_before_q6_before_q6_of_q3_right_down = (
-            r32*cos_q6_before_q6_of_q3_right_down + r31*sin_q6_before_q6_of_q3_right_down
+            r32 * cos_q6_before_q6_of_q3_right_down + r31 * sin_q6_before_q6_of_q3_right_down
         )
         wrist_y_from_q1_before_q6_of_q3_right_down = (
-            wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_right_down
+            wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3_right_down
         )
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_right_down = (
-            wrist_x_from_q1_before_q6_of_q3_right_down*wrist_x_from_q1_before_q6_of_q3_right_down
-            + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down
+            wrist_x_from_q1_before_q6_of_q3_right_down * wrist_x_from_q1_before_q6_of_q3_right_down
+            + wrist_y_from_q1_before_q6_of_q3_right_down * wrist_y_from_q1_before_q6_of_q3_right_down
             - a2_squared_plus_a3_squared
         )
         size_of_value_q6_of_q3_right_down = absolute(value_q6_of_q3_right_down)
 
         def elsewhere_cos_q6_right_down(
-            ahead_q1_right_down: Real, cos_q5_right_down: Real, cos_q6_before_q6_of_q3_right_down: Real,
-            q6_radius_of_q5_times_r33_right_down: Real, r31: Real, r32: Real, radius_q6_right_down: Real,
-            sin_q6_before_q6_of_q3_right_down: Real, size_of_value_q6_of_q3_right_down: Real,
-            value_q6_of_q3_right_down: Real, wrist_y_from_q1_fixed: Real,
+            ahead_q1_right_down: Real,
+            cos_q5_right_down: Real,
+            cos_q6_before_q6_of_q3_right_down: Real,
+            q6_radius_of_q5_times_r33_right_down: Real,
+            r31: Real,
+            r32: Real,
+            radius_q6_right_down: Real,
+            sin_q6_before_q6_of_q3_right_down: Real,
+            size_of_value_q6_of_q3_right_down: Real,
+            value_q6_of_q3_right_down: Real,
+            wrist_y_from_q1_fixed: Real,
         ) -> Reals:
-            wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_across = d5 * r31
+            wrist_y_from_q1_along = d5 * r32
 
             def elsewhere_cos_q6_right_down(
-                ahead_q1_right_down: Real, cos_q5_right_down: Real, cos_q6_before_q6_of_q3_right_down: Real,
-                q6_radius_of_q5_times_r33_right_down: Real, radius_q6_right_down: Real,
-                sin_q6_before_q6_of_q3_right_down: Real, value_q6_of_q3_right_down: Real, wrist_y_from_q1_across: Real,
-                wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
+                ahead_q1_right_down: Real,
+                cos_q5_right_down: Real,
+                cos_q6_before_q6_of_q3_right_down: Real,
+                q6_radius_of_q5_times_r33_right_down: Real,
+                radius_q6_right_down: Real,
+                sin_q6_before_q6_of_q3_right_down: Real,
+                value_q6_of_q3_right_down: Real,
+                wrist_y_from_q1_across: Real,
+                wrist_y_from_q1_along: Real,
+                wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_right_down = ahead_q1_right_down + d5*q6_radius_of_q5_times_r33_right_down
-                wrist_x_from_q1_along_right_down = -wrist_y_from_q1_across*cos_q5_right_down
+                wrist_x_from_q1_fixed_right_down = ahead_q1_right_down + d5 * q6_radius_of_q5_times_r33_right_down
+                wrist_x_from_q1_along_right_down = -wrist_y_from_q1_across * cos_q5_right_down
                 along_q6_of_q3_right_down = (
-                    2.0*wrist_x_from_q1_along_right_down*wrist_x_from_q1_fixed_right_down
-                    + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+                    2.0 * wrist_x_from_q1_along_right_down * wrist_x_from_q1_fixed_right_down
+                    + 2.0 * wrist_y_from_q1_along * wrist_y_from_q1_fixed
                 )
-                wrist_x_from_q1_across_right_down = wrist_y_from_q1_along*cos_q5_right_down
+                wrist_x_from_q1_across_right_down = wrist_y_from_q1_along * cos_q5_right_down
                 across_q6_of_q3_right_down = (
-                    2.0*wrist_x_from_q1_across_right_down*wrist_x_from_q1_fixed_right_down
-                    + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                    2.0 * wrist_x_from_q1_across_right_down * wrist_x_from_q1_fixed_right_down
+                    + 2.0 * wrist_y_from_q1_across * wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3_right_down = sqrt(
-                    across_q6_of_q3_right_down*across_q6_of_q3_right_down
-                    + along_q6_of_q3_right_down*along_q6_of_q3_right_down
+                    across_q6_of_q3_right_down * across_q6_of_q3_right_down
+                    + along_q6_of_q3_right_down * along_q6_of_q3_right_down
                 )
 
                 def elsewhere_highest_q6_of_q3_right_down() -> Reals:
@@ -3350,17 +3858,22 @@ class ArrayPrograms(Programs):
                     return (highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down)
 
                 level_q6_of_q3_right_down = (
-                    value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
-                    - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
+                    value_q6_of_q3_right_down
+                    - across_q6_of_q3_right_down * sin_q6_before_q6_of_q3_right_down
+                    - along_q6_of_q3_right_down * cos_q6_before_q6_of_q3_right_down
                 )
-                part_of_highest_q6_of_q3_right_down = (size_q1_for_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down
+                part_of_highest_q6_of_q3_right_down = (
+                    size_q1_for_q3 - level_q6_of_q3_right_down
+                ) / swing_q6_of_q3_right_down
                 # the arc: cosines from its centre
                 highest_q6_of_q3_right_down = select(
                     part_of_highest_q6_of_q3_right_down > 1.0,
                     1.0,
                     select(part_of_highest_q6_of_q3_right_down < -1.0, -1.0, part_of_highest_q6_of_q3_right_down),
                 )
-                part_of_lowest_q6_of_q3_right_down = (level_q6_of_q3_right_down + size_q1_for_q3)/swing_q6_of_q3_right_down
+                part_of_lowest_q6_of_q3_right_down = (
+                    level_q6_of_q3_right_down + size_q1_for_q3
+                ) / swing_q6_of_q3_right_down
                 lowest_q6_of_q3_right_down = select(
                     -part_of_lowest_q6_of_q3_right_down > 1.0,
                     1.0,
@@ -3373,47 +3886,46 @@ class ArrayPrograms(Programs):
                     (),
                 )
                 near_q6_of_q3_right_down = atan2(
-                    root((1.0 - highest_q6_of_q3_right_down)*(1.0 + highest_q6_of_q3_right_down)),
+                    root((1.0 - highest_q6_of_q3_right_down) * (1.0 + highest_q6_of_q3_right_down)),
                     highest_q6_of_q3_right_down,
                 )
                 far_q6_of_q3_right_down = atan2(
-                    root((1.0 - lowest_q6_of_q3_right_down)*(1.0 + lowest_q6_of_q3_right_down)),
+                    root((1.0 - lowest_q6_of_q3_right_down) * (1.0 + lowest_q6_of_q3_right_down)),
                     lowest_q6_of_q3_right_down,
                 )
                 centre_q6_of_q3_right_down = atan2(across_q6_of_q3_right_down, along_q6_of_q3_right_down)
                 angle_q6_of_q3_right_down = atan2(sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_down)
                 side_q6_of_q3_right_down = select(
-                    (
-                        along_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
-                        - across_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down >= 0.0
-                    ),
+                    along_q6_of_q3_right_down * sin_q6_before_q6_of_q3_right_down
+                    - across_q6_of_q3_right_down * cos_q6_before_q6_of_q3_right_down
+                    >= 0.0,
                     1.0,
                     -1.0,
                 )
                 moved_q6_of_q3_right_down = nearest_on_arc(
                     angle_q6_of_q3_right_down,
-                    (
-                        centre_q6_of_q3_right_down
-                        + 0.5*(far_q6_of_q3_right_down + near_q6_of_q3_right_down)*side_q6_of_q3_right_down
-                    ),
-                    0.5*far_q6_of_q3_right_down - 0.5*near_q6_of_q3_right_down,
+                    centre_q6_of_q3_right_down
+                    + 0.5 * (far_q6_of_q3_right_down + near_q6_of_q3_right_down) * side_q6_of_q3_right_down,
+                    0.5 * far_q6_of_q3_right_down - 0.5 * near_q6_of_q3_right_down,
                 )
                 cos_q6_after_q6_of_q3_right_down = cos(moved_q6_of_q3_right_down)
                 sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down)
                 part_of_cost_q6_of_q3_right_down = sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
-                part_of_cost_q6_of_q3_2_right_down = cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
+                part_of_cost_q6_of_q3_2_right_down = (
+                    cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
+                )
                 # what the motion changes of the pose
                 cost_q6_of_q3_right_down = (
                     sqrt(
-                        part_of_cost_q6_of_q3_2_right_down*part_of_cost_q6_of_q3_2_right_down
-                        + part_of_cost_q6_of_q3_right_down*part_of_cost_q6_of_q3_right_down
+                        part_of_cost_q6_of_q3_2_right_down * part_of_cost_q6_of_q3_2_right_down
+                        + part_of_cost_q6_of_q3_right_down * part_of_cost_q6_of_q3_right_down
                     )
-                    *radius_q6_right_down
+                    * radius_q6_right_down
                 )
                 stays_q6_of_q3_right_down = (cost_q6_of_q3_right_down > 1e-12) & (radius_q6_right_down > 1e-11)
 
                 def elsewhere_cos_q6_right_down(
-                    cos_q6_after_q6_of_q3_right_down: Real, sin_q6_after_q6_of_q3_right_down: Real,
+                    cos_q6_after_q6_of_q3_right_down: Real, sin_q6_after_q6_of_q3_right_down: Real
                 ) -> Reals:
                     cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # kept where the rest can be reached
                     sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # kept where the rest can be reached
@@ -3436,9 +3948,16 @@ class ArrayPrograms(Programs):
                 (cos_q6_right_down, sin_q6_right_down),
                 elsewhere_cos_q6_right_down,
                 (
-                    ahead_q1_right_down, cos_q5_right_down, cos_q6_before_q6_of_q3_right_down,
-                    q6_radius_of_q5_times_r33_right_down, radius_q6_right_down, sin_q6_before_q6_of_q3_right_down,
-                    value_q6_of_q3_right_down, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                    ahead_q1_right_down,
+                    cos_q5_right_down,
+                    cos_q6_before_q6_of_q3_right_down,
+                    q6_radius_of_q5_times_r33_right_down,
+                    radius_q6_right_down,
+                    sin_q6_before_q6_of_q3_right_down,
+                    value_q6_of_q3_right_down,
+                    wrist_y_from_q1_across,
+                    wrist_y_from_q1_along,
+                    wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6_right_down, sin_q6_right_down)
@@ -3450,31 +3969,38 @@ class ArrayPrograms(Programs):
             (cos_q6_right_down, sin_q6_right_down),
             elsewhere_cos_q6_right_down,
             (
-                ahead_q1_right_down, cos_q5_right_down, cos_q6_before_q6_of_q3_right_down,
-                q6_radius_of_q5_times_r33_right_down, r31, r32, radius_q6_right_down,
-                sin_q6_before_q6_of_q3_right_down, size_of_value_q6_of_q3_right_down, value_q6_of_q3_right_down,
+                ahead_q1_right_down,
+                cos_q5_right_down,
+                cos_q6_before_q6_of_q3_right_down,
+                q6_radius_of_q5_times_r33_right_down,
+                r31,
+                r32,
+                radius_q6_right_down,
+                sin_q6_before_q6_of_q3_right_down,
+                size_of_value_q6_of_q3_right_down,
+                value_q6_of_q3_right_down,
                 wrist_y_from_q1_fixed,
             ),
         )
-        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
+        r21_from_q1_before_q6_right_down = r31 * cos_q6_right_down - r32 * sin_q6_right_down
         r21_from_q1_before_q56_right_down = (
-            r21_from_q1_before_q6_right_down*cos_q5_right_down - q6_radius_of_q5_times_r33_right_down
+            r21_from_q1_before_q6_right_down * cos_q5_right_down - q6_radius_of_q5_times_r33_right_down
         )
         # what the unknown links must span
-        wrist_x_from_q1_right_down = ahead_q1_right_down - d5*r21_from_q1_before_q56_right_down
-        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
+        wrist_x_from_q1_right_down = ahead_q1_right_down - d5 * r21_from_q1_before_q56_right_down
+        r22_from_q1_before_q6_right_down = r32 * cos_q6_right_down + r31 * sin_q6_right_down
         # what the unknown links must span
-        wrist_y_from_q1_right_down = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_right_down
+        wrist_y_from_q1_right_down = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_right_down
         reach_right_down = sqrt(
-            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
-            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
+            wrist_x_from_q1_right_down * wrist_x_from_q1_right_down
+            + wrist_y_from_q1_right_down * wrist_y_from_q1_right_down
         )
         # 1 - cosine, times the scale
-        one_less_cos_q3_right_down = (a2_plus_a3 + reach_right_down)*(a2_plus_a3 - reach_right_down)
+        one_less_cos_q3_right_down = (a2_plus_a3 + reach_right_down) * (a2_plus_a3 - reach_right_down)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_right_down = (reach_right_down - a2_minus_a3)*(a2_minus_a3 + reach_right_down)
+        one_plus_cos_q3_right_down = (reach_right_down - a2_minus_a3) * (a2_minus_a3 + reach_right_down)
         # the square of sine times scale
-        sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down
+        sine_square_q3_right_down = one_less_cos_q3_right_down * one_plus_cos_q3_right_down
         # q3: out of reach
         refusal_right_down = select(sine_square_q3_right_down >= -scale_q3_squared_times_rounding, 0, 3)
         # A1: its turn
@@ -3482,11 +4008,11 @@ class ArrayPrograms(Programs):
         # twice the scale, with the rounding of its parts
         both_q3_right_down = one_less_cos_q3_right_down + one_plus_cos_q3_right_down
         sum_q3_right_down = select(absolute(both_q3_right_down) > 0.0, both_q3_right_down, 1.0)
-        cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)/sum_q3_right_down
-        sin_q3_right_up_down = 2.0*root(sine_square_q3_right_down)/absolute(sum_q3_right_down)
+        cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down) / sum_q3_right_down
+        sin_q3_right_up_down = 2.0 * root(sine_square_q3_right_down) / absolute(sum_q3_right_down)
 
         def elsewhere_direction_x_q2_right_up_down(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
             direction_x_q2_right_up_down = cos(free_a2)
             direction_y_q2_right_up_down = sin(free_a2)
@@ -3494,76 +4020,82 @@ class ArrayPrograms(Programs):
             direction_x_q2_right_down_down = direction_x_q2_right_up_down
             direction_y_q2_right_down_down = direction_y_q2_right_up_down
             return (
-                direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
+                direction_x_q2_right_up_down,
+                direction_y_q2_right_up_down,
+                direction_x_q2_right_down_down,
                 direction_y_q2_right_down_down,
             )
 
-        arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-        arm_across_q2_right_up_down = a3*sin_q3_right_up_down
+        arm_along_q2_right_down = a2 + a3 * cos_q3_right_down
+        arm_across_q2_right_up_down = a3 * sin_q3_right_up_down
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         direction_x_q2_right_up_down = (
-            arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            + arm_along_q2_right_down*wrist_x_from_q1_right_down
+            arm_across_q2_right_up_down * wrist_y_from_q1_right_down
+            + arm_along_q2_right_down * wrist_x_from_q1_right_down
         )
         direction_y_q2_right_up_down = (
-            arm_along_q2_right_down*wrist_y_from_q1_right_down
-            - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+            arm_along_q2_right_down * wrist_y_from_q1_right_down
+            - arm_across_q2_right_up_down * wrist_x_from_q1_right_down
         )
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         direction_x_q2_right_down_down = (
-            arm_along_q2_right_down*wrist_x_from_q1_right_down
-            - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+            arm_along_q2_right_down * wrist_x_from_q1_right_down
+            - arm_across_q2_right_up_down * wrist_y_from_q1_right_down
         )
         direction_y_q2_right_down_down = (
-            arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            + arm_along_q2_right_down*wrist_y_from_q1_right_down
+            arm_across_q2_right_up_down * wrist_x_from_q1_right_down
+            + arm_along_q2_right_down * wrist_y_from_q1_right_down
         )
-        found = elsewhere(
+        (
+            direction_x_q2_right_up_down,
+            direction_y_q2_right_up_down,
+            direction_x_q2_right_down_down,
+            direction_y_q2_right_down_down,
+        ) = elsewhere(
             reach_right_down > machine_scale_times_free_angle,
             (
-                direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
+                direction_x_q2_right_up_down,
+                direction_y_q2_right_up_down,
+                direction_x_q2_right_down_down,
                 direction_y_q2_right_down_down,
             ),
             elsewhere_direction_x_q2_right_up_down,
             (ref_a2,),
         )
-        (
-            direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
-            direction_y_q2_right_down_down,
-        ) = found
         angle_q2_right_up_down = atan2(direction_y_q2_right_up_down, direction_x_q2_right_up_down)
-        axis_a2_right_up_down = nearest_period(offset_a2 + angle_q2_right_up_down/DEGREE, near_a2)  # A2: its turn
+        axis_a2_right_up_down = nearest_period(offset_a2 + angle_q2_right_up_down / DEGREE, near_a2)  # A2: its turn
         angle_q3_right_up_down = atan2(sin_q3_right_up_down, cos_q3_right_down)
-        axis_a3_right_up_down = nearest_period(offset_a3 + angle_q3_right_up_down/DEGREE, near_a3)  # A3: its turn
+        axis_a3_right_up_down = nearest_period(offset_a3 + angle_q3_right_up_down / DEGREE, near_a3)  # A3: its turn
         angle_with_q4_right_down = atan2(r21_from_q1_before_q56_right_down, r22_from_q1_before_q6_right_down)
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_right_up_down = nearest_period(
-            offset_a4 + (angle_with_q4_right_down - angle_q2_right_up_down - angle_q3_right_up_down)/DEGREE, near_a4,
+            offset_a4 + (angle_with_q4_right_down - angle_q2_right_up_down - angle_q3_right_up_down) / DEGREE, near_a4
         )
         # A5: its turn
         axis_a5_right_down = nearest_period(offset_a5 + degrees(radius_q6_right_down, cos_q5_right_down), near_a5)
         # A6: its turn
         axis_a6_right_down = nearest_period(offset_a6 + degrees(sin_q6_right_down, cos_q6_right_down), near_a6)
         # q5: linear pair in the q6 radius and r32 equations
-        cos_q5_right_up = r13*sin_q1_right_up - r23*cos_q1_right_up
-        r21_from_q1_right_up = r21*cos_q1_right_up - r11*sin_q1_right_up
-        r22_from_q1_right_up = r22*cos_q1_right_up - r12*sin_q1_right_up
+        cos_q5_right_up = r13 * sin_q1_right_up - r23 * cos_q1_right_up
+        r21_from_q1_right_up = r21 * cos_q1_right_up - r11 * sin_q1_right_up
+        r22_from_q1_right_up = r22 * cos_q1_right_up - r12 * sin_q1_right_up
         # q6: direction and distance of a point
         radius_q6_right_up = sqrt(
-            r21_from_q1_right_up*r21_from_q1_right_up + r22_from_q1_right_up*r22_from_q1_right_up
+            r21_from_q1_right_up * r21_from_q1_right_up + r22_from_q1_right_up * r22_from_q1_right_up
         )
-        q6_radius_of_q5_times_r33_right_up = -r33*radius_q6_right_up
+        q6_radius_of_q5_times_r33_right_up = -r33 * radius_q6_right_up
 
         def elsewhere_cos_q6_before_q6_of_q3_right_up(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            free_a6 = (ref_a6 - offset_a6) * DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = -sin(free_a6)
             cos_q6_before_q6_of_q3_right_up = cos_of_free_a6  # its reference where it is free
             sin_q6_before_q6_of_q3_right_up = -sin_of_free_a6
             return (cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up)
 
-        cos_q6_before_q6_of_q3_right_up = r21_from_q1_right_up/radius_q6_right_up  # its reference where it is free
-        sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right_up/radius_q6_right_up
+        # its reference where it is free
+        cos_q6_before_q6_of_q3_right_up = r21_from_q1_right_up / radius_q6_right_up
+        sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right_up / radius_q6_right_up
         cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up = elsewhere(
             radius_q6_right_up > 1e-11,
             (cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up),
@@ -3571,56 +4103,70 @@ class ArrayPrograms(Programs):
             (ref_a6,),
         )
         r21_from_q1_before_q6_before_q6_of_q3_right_up = (
-            r31*cos_q6_before_q6_of_q3_right_up - r32*sin_q6_before_q6_of_q3_right_up
+            r31 * cos_q6_before_q6_of_q3_right_up - r32 * sin_q6_before_q6_of_q3_right_up
         )
         r21_from_q1_before_q56_before_q6_of_q3_right_up = (
-            r21_from_q1_before_q6_before_q6_of_q3_right_up*cos_q5_right_up - q6_radius_of_q5_times_r33_right_up
+            r21_from_q1_before_q6_before_q6_of_q3_right_up * cos_q5_right_up - q6_radius_of_q5_times_r33_right_up
         )
         wrist_x_from_q1_before_q6_of_q3_right_up = (
-            ahead_q1_right_up - d5*r21_from_q1_before_q56_before_q6_of_q3_right_up
+            ahead_q1_right_up - d5 * r21_from_q1_before_q56_before_q6_of_q3_right_up
         )
         r22_from_q1_before_q6_before_q6_of_q3_right_up = (
-            r32*cos_q6_before_q6_of_q3_right_up + r31*sin_q6_before_q6_of_q3_right_up
+            r32 * cos_q6_before_q6_of_q3_right_up + r31 * sin_q6_before_q6_of_q3_right_up
         )
         wrist_y_from_q1_before_q6_of_q3_right_up = (
-            wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_right_up
+            wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3_right_up
         )
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_right_up = (
-            wrist_x_from_q1_before_q6_of_q3_right_up*wrist_x_from_q1_before_q6_of_q3_right_up
-            + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up
+            wrist_x_from_q1_before_q6_of_q3_right_up * wrist_x_from_q1_before_q6_of_q3_right_up
+            + wrist_y_from_q1_before_q6_of_q3_right_up * wrist_y_from_q1_before_q6_of_q3_right_up
             - a2_squared_plus_a3_squared
         )
         size_of_value_q6_of_q3_right_up = absolute(value_q6_of_q3_right_up)
 
         def elsewhere_cos_q6_right_up(
-            ahead_q1_right_up: Real, cos_q5_right_up: Real, cos_q6_before_q6_of_q3_right_up: Real,
-            q6_radius_of_q5_times_r33_right_up: Real, r31: Real, r32: Real, radius_q6_right_up: Real,
-            sin_q6_before_q6_of_q3_right_up: Real, size_of_value_q6_of_q3_right_up: Real,
-            value_q6_of_q3_right_up: Real, wrist_y_from_q1_fixed: Real,
+            ahead_q1_right_up: Real,
+            cos_q5_right_up: Real,
+            cos_q6_before_q6_of_q3_right_up: Real,
+            q6_radius_of_q5_times_r33_right_up: Real,
+            r31: Real,
+            r32: Real,
+            radius_q6_right_up: Real,
+            sin_q6_before_q6_of_q3_right_up: Real,
+            size_of_value_q6_of_q3_right_up: Real,
+            value_q6_of_q3_right_up: Real,
+            wrist_y_from_q1_fixed: Real,
         ) -> Reals:
-            wrist_y_from_q1_across = d5*r31
-            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_across = d5 * r31
+            wrist_y_from_q1_along = d5 * r32
 
             def elsewhere_cos_q6_right_up(
-                ahead_q1_right_up: Real, cos_q5_right_up: Real, cos_q6_before_q6_of_q3_right_up: Real,
-                q6_radius_of_q5_times_r33_right_up: Real, radius_q6_right_up: Real, sin_q6_before_q6_of_q3_right_up: Real,
-                value_q6_of_q3_right_up: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+                ahead_q1_right_up: Real,
+                cos_q5_right_up: Real,
+                cos_q6_before_q6_of_q3_right_up: Real,
+                q6_radius_of_q5_times_r33_right_up: Real,
+                radius_q6_right_up: Real,
+                sin_q6_before_q6_of_q3_right_up: Real,
+                value_q6_of_q3_right_up: Real,
+                wrist_y_from_q1_across: Real,
+                wrist_y_from_q1_along: Real,
                 wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_right_up = ahead_q1_right_up + d5*q6_radius_of_q5_times_r33_right_up
-                wrist_x_from_q1_along_right_up = -wrist_y_from_q1_across*cos_q5_right_up
+                wrist_x_from_q1_fixed_right_up = ahead_q1_right_up + d5 * q6_radius_of_q5_times_r33_right_up
+                wrist_x_from_q1_along_right_up = -wrist_y_from_q1_across * cos_q5_right_up
                 along_q6_of_q3_right_up = (
-                    2.0*wrist_x_from_q1_along_right_up*wrist_x_from_q1_fixed_right_up
-                    + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+                    2.0 * wrist_x_from_q1_along_right_up * wrist_x_from_q1_fixed_right_up
+                    + 2.0 * wrist_y_from_q1_along * wrist_y_from_q1_fixed
                 )
-                wrist_x_from_q1_across_right_up = wrist_y_from_q1_along*cos_q5_right_up
+                wrist_x_from_q1_across_right_up = wrist_y_from_q1_along * cos_q5_right_up
                 across_q6_of_q3_right_up = (
-                    2.0*wrist_x_from_q1_across_right_up*wrist_x_from_q1_fixed_right_up
-                    + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                    2.0 * wrist_x_from_q1_across_right_up * wrist_x_from_q1_fixed_right_up
+                    + 2.0 * wrist_y_from_q1_across * wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3_right_up = sqrt(
-                    across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
+                    across_q6_of_q3_right_up * across_q6_of_q3_right_up
+                    + along_q6_of_q3_right_up * along_q6_of_q3_right_up
                 )
 
                 def elsewhere_highest_q6_of_q3_right_up() -> Reals:
@@ -3629,17 +4175,18 @@ class ArrayPrograms(Programs):
                     return (highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up)
 
                 level_q6_of_q3_right_up = (
-                    value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
-                    - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
+                    value_q6_of_q3_right_up
+                    - across_q6_of_q3_right_up * sin_q6_before_q6_of_q3_right_up
+                    - along_q6_of_q3_right_up * cos_q6_before_q6_of_q3_right_up
                 )
-                part_of_highest_q6_of_q3_right_up = (size_q1_for_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up
+                part_of_highest_q6_of_q3_right_up = (size_q1_for_q3 - level_q6_of_q3_right_up) / swing_q6_of_q3_right_up
                 # the arc: cosines from its centre
                 highest_q6_of_q3_right_up = select(
                     part_of_highest_q6_of_q3_right_up > 1.0,
                     1.0,
                     select(part_of_highest_q6_of_q3_right_up < -1.0, -1.0, part_of_highest_q6_of_q3_right_up),
                 )
-                part_of_lowest_q6_of_q3_right_up = (level_q6_of_q3_right_up + size_q1_for_q3)/swing_q6_of_q3_right_up
+                part_of_lowest_q6_of_q3_right_up = (level_q6_of_q3_right_up + size_q1_for_q3) / swing_q6_of_q3_right_up
                 lowest_q6_of_q3_right_up = select(
                     -part_of_lowest_q6_of_q3_right_up > 1.0,
                     1.0,
@@ -3652,27 +4199,26 @@ class ArrayPrograms(Programs):
                     (),
                 )
                 near_q6_of_q3_right_up = atan2(
-                    root((1.0 - highest_q6_of_q3_right_up)*(1.0 + highest_q6_of_q3_right_up)),
+                    root((1.0 - highest_q6_of_q3_right_up) * (1.0 + highest_q6_of_q3_right_up)),
                     highest_q6_of_q3_right_up,
                 )
                 far_q6_of_q3_right_up = atan2(
-                    root((1.0 - lowest_q6_of_q3_right_up)*(1.0 + lowest_q6_of_q3_right_up)),
-                    lowest_q6_of_q3_right_up,
+                    root((1.0 - lowest_q6_of_q3_right_up) * (1.0 + lowest_q6_of_q3_right_up)), lowest_q6_of_q3_right_up
                 )
                 centre_q6_of_q3_right_up = atan2(across_q6_of_q3_right_up, along_q6_of_q3_right_up)
                 angle_q6_of_q3_right_up = atan2(sin_q6_before_q6_of_q3_right_up, cos_q6_before_q6_of_q3_right_up)
                 side_q6_of_q3_right_up = select(
-                    (
-                        along_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
-                        - across_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up >= 0.0
-                    ),
+                    along_q6_of_q3_right_up * sin_q6_before_q6_of_q3_right_up
+                    - across_q6_of_q3_right_up * cos_q6_before_q6_of_q3_right_up
+                    >= 0.0,
                     1.0,
                     -1.0,
                 )
                 moved_q6_of_q3_right_up = nearest_on_arc(
                     angle_q6_of_q3_right_up,
-                    (centre_q6_of_q3_right_up + 0.5*(far_q6_of_q3_right_up + near_q6_of_q3_right_up)*side_q6_of_q3_right_up),
-                    0.5*far_q6_of_q3_right_up - 0.5*near_q6_of_q3_right_up,
+                    centre_q6_of_q3_right_up
+                    + 0.5 * (far_q6_of_q3_right_up + near_q6_of_q3_right_up) * side_q6_of_q3_right_up,
+                    0.5 * far_q6_of_q3_right_up - 0.5 * near_q6_of_q3_right_up,
                 )
                 cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up)
                 sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
@@ -3681,15 +4227,15 @@ class ArrayPrograms(Programs):
                 # what the motion changes of the pose
                 cost_q6_of_q3_right_up = (
                     sqrt(
-                        part_of_cost_q6_of_q3_2_right_up*part_of_cost_q6_of_q3_2_right_up
-                        + part_of_cost_q6_of_q3_right_up*part_of_cost_q6_of_q3_right_up
+                        part_of_cost_q6_of_q3_2_right_up * part_of_cost_q6_of_q3_2_right_up
+                        + part_of_cost_q6_of_q3_right_up * part_of_cost_q6_of_q3_right_up
                     )
-                    *radius_q6_right_up
+                    * radius_q6_right_up
                 )
                 stays_q6_of_q3_right_up = (cost_q6_of_q3_right_up > 1e-12) & (radius_q6_right_up > 1e-11)
 
                 def elsewhere_cos_q6_right_up(
-                    cos_q6_after_q6_of_q3_right_up: Real, sin_q6_after_q6_of_q3_right_up: Real,
+                    cos_q6_after_q6_of_q3_right_up: Real, sin_q6_after_q6_of_q3_right_up: Real
                 ) -> Reals:
                     cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # kept where the rest can be reached
                     sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # kept where the rest can be reached
@@ -3712,9 +4258,16 @@ class ArrayPrograms(Programs):
                 (cos_q6_right_up, sin_q6_right_up),
                 elsewhere_cos_q6_right_up,
                 (
-                    ahead_q1_right_up, cos_q5_right_up, cos_q6_before_q6_of_q3_right_up,
-                    q6_radius_of_q5_times_r33_right_up, radius_q6_right_up, sin_q6_before_q6_of_q3_right_up,
-                    value_q6_of_q3_right_up, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                    ahead_q1_right_up,
+                    cos_q5_right_up,
+                    cos_q6_before_q6_of_q3_right_up,
+                    q6_radius_of_q5_times_r33_right_up,
+                    radius_q6_right_up,
+                    sin_q6_before_q6_of_q3_right_up,
+                    value_q6_of_q3_right_up,
+                    wrist_y_from_q1_across,
+                    wrist_y_from_q1_along,
+                    wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6_right_up, sin_q6_right_up)
@@ -3726,28 +4279,37 @@ class ArrayPrograms(Programs):
             (cos_q6_right_up, sin_q6_right_up),
             elsewhere_cos_q6_right_up,
             (
-                ahead_q1_right_up, cos_q5_right_up, cos_q6_before_q6_of_q3_right_up,
-                q6_radius_of_q5_times_r33_right_up, r31, r32, radius_q6_right_up, sin_q6_before_q6_of_q3_right_up,
-                size_of_value_q6_of_q3_right_up, value_q6_of_q3_right_up, wrist_y_from_q1_fixed,
+                ahead_q1_right_up,
+                cos_q5_right_up,
+                cos_q6_before_q6_of_q3_right_up,
+                q6_radius_of_q5_times_r33_right_up,
+                r31,
+                r32,
+                radius_q6_right_up,
+                sin_q6_before_q6_of_q3_right_up,
+                size_of_value_q6_of_q3_right_up,
+                value_q6_of_q3_right_up,
+                wrist_y_from_q1_fixed,
             ),
         )
-        r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
+        r21_from_q1_before_q6_right_up = r31 * cos_q6_right_up - r32 * sin_q6_right_up
         r21_from_q1_before_q56_right_up = (
-            r21_from_q1_before_q6_right_up*cos_q5_right_up - q6_radius_of_q5_times_r33_right_up
+            r21_from_q1_before_q6_right_up * cos_q5_right_up - q6_radius_of_q5_times_r33_right_up
         )
         # what the unknown links must span
-        wrist_x_from_q1_right_up = ahead_q1_right_up - d5*r21_from_q1_before_q56_right_up
-        r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
+        wrist_x_from_q1_right_up = ahead_q1_right_up - d5 * r21_from_q1_before_q56_right_up
+        r22_from_q1_before_q6_right_up = r32 * cos_q6_right_up + r31 * sin_q6_right_up
         # what the unknown links must span
-        wrist_y_from_q1_right_up = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_right_up
+        wrist_y_from_q1_right_up = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_right_up
         reach_right_up = sqrt(
-            wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
+            wrist_x_from_q1_right_up * wrist_x_from_q1_right_up + wrist_y_from_q1_right_up * wrist_y_from_q1_right_up
         )
         # 1 - cosine, times the scale
-        one_less_cos_q3_right_up = (a2_plus_a3 + reach_right_up)*(a2_plus_a3 - reach_right_up)
+        one_less_cos_q3_right_up = (a2_plus_a3 + reach_right_up) * (a2_plus_a3 - reach_right_up)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up)
-        sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up  # the square of sine times scale
+        one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3) * (a2_minus_a3 + reach_right_up)
+        # the square of sine times scale
+        sine_square_q3_right_up = one_less_cos_q3_right_up * one_plus_cos_q3_right_up
         # q3: out of reach
         refusal_right_up = select(sine_square_q3_right_up >= -scale_q3_squared_times_rounding, 0, 3)
         # A1: its turn
@@ -3755,11 +4317,11 @@ class ArrayPrograms(Programs):
         # twice the scale, with the rounding of its parts
         both_q3_right_up = one_less_cos_q3_right_up + one_plus_cos_q3_right_up
         sum_q3_right_up = select(absolute(both_q3_right_up) > 0.0, both_q3_right_up, 1.0)
-        cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)/sum_q3_right_up
-        sin_q3_right_up_up = 2.0*root(sine_square_q3_right_up)/absolute(sum_q3_right_up)
+        cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up) / sum_q3_right_up
+        sin_q3_right_up_up = 2.0 * root(sine_square_q3_right_up) / absolute(sum_q3_right_up)
 
         def elsewhere_direction_x_q2_right_up_up(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
             direction_x_q2_right_up_up = cos(free_a2)
             direction_y_q2_right_up_up = sin(free_a2)
@@ -3767,68 +4329,75 @@ class ArrayPrograms(Programs):
             direction_x_q2_right_down_up = direction_x_q2_right_up_up
             direction_y_q2_right_down_up = direction_y_q2_right_up_up
             return (
-                direction_x_q2_right_up_up, direction_y_q2_right_up_up, direction_x_q2_right_down_up,
+                direction_x_q2_right_up_up,
+                direction_y_q2_right_up_up,
+                direction_x_q2_right_down_up,
                 direction_y_q2_right_down_up,
             )
 
-        arm_along_q2_right_up = a2 + a3*cos_q3_right_up
-        arm_across_q2_right_up_up = a3*sin_q3_right_up_up
+        arm_along_q2_right_up = a2 + a3 * cos_q3_right_up
+        arm_across_q2_right_up_up = a3 * sin_q3_right_up_up
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         direction_x_q2_right_up_up = (
-            arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
+            arm_across_q2_right_up_up * wrist_y_from_q1_right_up + arm_along_q2_right_up * wrist_x_from_q1_right_up
         )
         direction_y_q2_right_up_up = (
-            arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
+            arm_along_q2_right_up * wrist_y_from_q1_right_up - arm_across_q2_right_up_up * wrist_x_from_q1_right_up
         )
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         direction_x_q2_right_down_up = (
-            arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
+            arm_along_q2_right_up * wrist_x_from_q1_right_up - arm_across_q2_right_up_up * wrist_y_from_q1_right_up
         )
         direction_y_q2_right_down_up = (
-            arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
+            arm_across_q2_right_up_up * wrist_x_from_q1_right_up + arm_along_q2_right_up * wrist_y_from_q1_right_up
         )
-        found = elsewhere(
+        (
+            direction_x_q2_right_up_up,
+            direction_y_q2_right_up_up,
+            direction_x_q2_right_down_up,
+            direction_y_q2_right_down_up,
+        ) = elsewhere(
             reach_right_up > machine_scale_times_free_angle,
             (
-                direction_x_q2_right_up_up, direction_y_q2_right_up_up, direction_x_q2_right_down_up,
+                direction_x_q2_right_up_up,
+                direction_y_q2_right_up_up,
+                direction_x_q2_right_down_up,
                 direction_y_q2_right_down_up,
             ),
             elsewhere_direction_x_q2_right_up_up,
             (ref_a2,),
         )
-        (
-            direction_x_q2_right_up_up, direction_y_q2_right_up_up, direction_x_q2_right_down_up,
-            direction_y_q2_right_down_up,
-        ) = found
         angle_q2_right_up_up = atan2(direction_y_q2_right_up_up, direction_x_q2_right_up_up)
-        axis_a2_right_up_up = nearest_period(offset_a2 + angle_q2_right_up_up/DEGREE, near_a2)  # A2: its turn
+        axis_a2_right_up_up = nearest_period(offset_a2 + angle_q2_right_up_up / DEGREE, near_a2)  # A2: its turn
         angle_q3_right_up_up = atan2(sin_q3_right_up_up, cos_q3_right_up)
-        axis_a3_right_up_up = nearest_period(offset_a3 + angle_q3_right_up_up/DEGREE, near_a3)  # A3: its turn
+        axis_a3_right_up_up = nearest_period(offset_a3 + angle_q3_right_up_up / DEGREE, near_a3)  # A3: its turn
         angle_with_q4_right_up = atan2(r21_from_q1_before_q56_right_up, r22_from_q1_before_q6_right_up)
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_right_up_up = nearest_period(
-            offset_a4 + (angle_with_q4_right_up - angle_q2_right_up_up - angle_q3_right_up_up)/DEGREE, near_a4,
+            offset_a4 + (angle_with_q4_right_up - angle_q2_right_up_up - angle_q3_right_up_up) / DEGREE, near_a4
         )
         # A5: its turn
         axis_a5_right_up = nearest_period(offset_a5 + degrees(-radius_q6_right_up, cos_q5_right_up), near_a5)
         # A6: its turn
         axis_a6_right_up = nearest_period(offset_a6 + degrees(sin_q6_right_up, cos_q6_right_up), near_a6)
         angle_q2_right_down_down = atan2(direction_y_q2_right_down_down, direction_x_q2_right_down_down)
-        axis_a2_right_down_down = nearest_period(offset_a2 + angle_q2_right_down_down/DEGREE, near_a2)  # A2: its turn
+        # A2: its turn
+        axis_a2_right_down_down = nearest_period(offset_a2 + angle_q2_right_down_down / DEGREE, near_a2)
         angle_q3_right_down_down = atan2(-sin_q3_right_up_down, cos_q3_right_down)
-        axis_a3_right_down_down = nearest_period(offset_a3 + angle_q3_right_down_down/DEGREE, near_a3)  # A3: its turn
+        # A3: its turn
+        axis_a3_right_down_down = nearest_period(offset_a3 + angle_q3_right_down_down / DEGREE, near_a3)
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_right_down_down = nearest_period(
-            (offset_a4 + (angle_with_q4_right_down - angle_q2_right_down_down - angle_q3_right_down_down)/DEGREE),
+            offset_a4 + (angle_with_q4_right_down - angle_q2_right_down_down - angle_q3_right_down_down) / DEGREE,
             near_a4,
         )
         angle_q2_right_down_up = atan2(direction_y_q2_right_down_up, direction_x_q2_right_down_up)
-        axis_a2_right_down_up = nearest_period(offset_a2 + angle_q2_right_down_up/DEGREE, near_a2)  # A2: its turn
+        axis_a2_right_down_up = nearest_period(offset_a2 + angle_q2_right_down_up / DEGREE, near_a2)  # A2: its turn
         angle_q3_right_down_up = atan2(-sin_q3_right_up_up, cos_q3_right_up)
-        axis_a3_right_down_up = nearest_period(offset_a3 + angle_q3_right_down_up/DEGREE, near_a3)  # A3: its turn
+        axis_a3_right_down_up = nearest_period(offset_a3 + angle_q3_right_down_up / DEGREE, near_a3)  # A3: its turn
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_right_down_up = nearest_period(
-            offset_a4 + (angle_with_q4_right_up - angle_q2_right_down_up - angle_q3_right_down_up)/DEGREE, near_a4,
+            offset_a4 + (angle_with_q4_right_up - angle_q2_right_down_up - angle_q3_right_down_up) / DEGREE, near_a4
         )
         status_left_down = refused(status, refusal_left_down)
         status_right_down = refused(status, refusal_right_down)
@@ -3837,57 +4406,89 @@ class ArrayPrograms(Programs):
         return (
             (
                 (
-                    axis_a1_left_down, axis_a2_left_up_down, axis_a3_left_up_down, axis_a4_left_up_down,
-                    axis_a5_left_down, axis_a6_left_down,
+                    axis_a1_left_down,
+                    axis_a2_left_up_down,
+                    axis_a3_left_up_down,
+                    axis_a4_left_up_down,
+                    axis_a5_left_down,
+                    axis_a6_left_down,
                 ),
                 status_left_down,
             ),
             (
                 (
-                    axis_a1_right_down, axis_a2_right_up_down, axis_a3_right_up_down, axis_a4_right_up_down,
-                    axis_a5_right_down, axis_a6_right_down,
+                    axis_a1_right_down,
+                    axis_a2_right_up_down,
+                    axis_a3_right_up_down,
+                    axis_a4_right_up_down,
+                    axis_a5_right_down,
+                    axis_a6_right_down,
                 ),
                 status_right_down,
             ),
             (
                 (
-                    axis_a1_left_down, axis_a2_left_down_down, axis_a3_left_down_down, axis_a4_left_down_down,
-                    axis_a5_left_down, axis_a6_left_down,
+                    axis_a1_left_down,
+                    axis_a2_left_down_down,
+                    axis_a3_left_down_down,
+                    axis_a4_left_down_down,
+                    axis_a5_left_down,
+                    axis_a6_left_down,
                 ),
                 status_left_down,
             ),
             (
                 (
-                    axis_a1_right_down, axis_a2_right_down_down, axis_a3_right_down_down, axis_a4_right_down_down,
-                    axis_a5_right_down, axis_a6_right_down,
+                    axis_a1_right_down,
+                    axis_a2_right_down_down,
+                    axis_a3_right_down_down,
+                    axis_a4_right_down_down,
+                    axis_a5_right_down,
+                    axis_a6_right_down,
                 ),
                 status_right_down,
             ),
             (
                 (
-                    axis_a1_left_up, axis_a2_left_up_up, axis_a3_left_up_up, axis_a4_left_up_up, axis_a5_left_up,
+                    axis_a1_left_up,
+                    axis_a2_left_up_up,
+                    axis_a3_left_up_up,
+                    axis_a4_left_up_up,
+                    axis_a5_left_up,
                     axis_a6_left_up,
                 ),
                 status_left_up,
             ),
             (
                 (
-                    axis_a1_right_up, axis_a2_right_up_up, axis_a3_right_up_up, axis_a4_right_up_up, axis_a5_right_up,
+                    axis_a1_right_up,
+                    axis_a2_right_up_up,
+                    axis_a3_right_up_up,
+                    axis_a4_right_up_up,
+                    axis_a5_right_up,
                     axis_a6_right_up,
                 ),
                 status_right_up,
             ),
             (
                 (
-                    axis_a1_left_up, axis_a2_left_down_up, axis_a3_left_down_up, axis_a4_left_down_up,
-                    axis_a5_left_up, axis_a6_left_up,
+                    axis_a1_left_up,
+                    axis_a2_left_down_up,
+                    axis_a3_left_down_up,
+                    axis_a4_left_down_up,
+                    axis_a5_left_up,
+                    axis_a6_left_up,
                 ),
                 status_left_up,
             ),
             (
                 (
-                    axis_a1_right_up, axis_a2_right_down_up, axis_a3_right_down_up, axis_a4_right_down_up,
-                    axis_a5_right_up, axis_a6_right_up,
+                    axis_a1_right_up,
+                    axis_a2_right_down_up,
+                    axis_a3_right_down_up,
+                    axis_a4_right_down_up,
+                    axis_a5_right_up,
+                    axis_a6_right_up,
                 ),
                 status_right_up,
             ),

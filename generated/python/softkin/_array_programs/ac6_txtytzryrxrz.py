@@ -44,65 +44,54 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
-        flange_x = k.flange_x
-        flange_y = k.flange_y
-        flange_z = k.flange_z
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
+        flange_x, flange_y, flange_z, offset_a1 = k.flange_x, k.flange_y, k.flange_z, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
         offset_a6 = k.offset_a6
         status = passed(axes)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9) & (absolute(axis_a5) <= 1e9) & (absolute(axis_a6) <= 1e9)
-            ),
+            (absolute(axis_a1) <= 1e9)
+            & (absolute(axis_a2) <= 1e9)
+            & (absolute(axis_a3) <= 1e9)
+            & (absolute(axis_a4) <= 1e9)
+            & (absolute(axis_a5) <= 1e9)
+            & (absolute(axis_a6) <= 1e9),
             Status.BAD_INPUT,
         )
-        a5 = DEGREE*(axis_a5 - offset_a5)
+        a5 = DEGREE * (axis_a5 - offset_a5)
         cos_a5 = cos(a5)
-        a4 = DEGREE*(axis_a4 - offset_a4)
+        a4 = DEGREE * (axis_a4 - offset_a4)
         sin_a4 = sin(a4)
-        r13_at_a5 = cos_a5*sin_a4
+        r13_at_a5 = cos_a5 * sin_a4
         sin_a5 = sin(a5)
         cos_a4 = cos(a4)
-        r12_at_a5 = sin_a4*sin_a5
-        a6 = DEGREE*(axis_a6 - offset_a6)
+        r12_at_a5 = sin_a4 * sin_a5
+        a6 = DEGREE * (axis_a6 - offset_a6)
         sin_a6 = sin(a6)
         cos_a6 = cos(a6)
-        r11_at_a6 = cos_a4*cos_a6 + r12_at_a5*sin_a6
-        r12_at_a6 = r12_at_a5*cos_a6 - cos_a4*sin_a6
+        r11_at_a6 = cos_a4 * cos_a6 + r12_at_a5 * sin_a6
+        r12_at_a6 = r12_at_a5 * cos_a6 - cos_a4 * sin_a6
         a1 = axis_a1 - offset_a1
-        x = a1 + flange_x*r11_at_a6 + flange_y*r12_at_a6 + flange_z*r13_at_a5
-        r21_at_a6 = cos_a5*sin_a6
-        r22_at_a6 = cos_a5*cos_a6
+        x = a1 + flange_x * r11_at_a6 + flange_y * r12_at_a6 + flange_z * r13_at_a5
+        r21_at_a6 = cos_a5 * sin_a6
+        r22_at_a6 = cos_a5 * cos_a6
         a2 = axis_a2 - offset_a2
-        y = a2 + flange_x*r21_at_a6 + flange_y*r22_at_a6 - flange_z*sin_a5
-        r33_at_a5 = cos_a4*cos_a5
-        r32_at_a5 = cos_a4*sin_a5
-        r31_at_a6 = r32_at_a5*sin_a6 - cos_a6*sin_a4
-        r32_at_a6 = r32_at_a5*cos_a6 + sin_a4*sin_a6
+        y = a2 + flange_x * r21_at_a6 + flange_y * r22_at_a6 - flange_z * sin_a5
+        r33_at_a5 = cos_a4 * cos_a5
+        r32_at_a5 = cos_a4 * sin_a5
+        r31_at_a6 = r32_at_a5 * sin_a6 - cos_a6 * sin_a4
+        r32_at_a6 = r32_at_a5 * cos_a6 + sin_a4 * sin_a6
         a3 = axis_a3 - offset_a3
-        z = a3 + flange_x*r31_at_a6 + flange_y*r32_at_a6 + flange_z*r33_at_a5
+        z = a3 + flange_x * r31_at_a6 + flange_y * r32_at_a6 + flange_z * r33_at_a5
         return (
-            (
-                (x, y, z),
-                (
-                    (r11_at_a6, r12_at_a6, r13_at_a5),
-                    (r21_at_a6, r22_at_a6, -sin_a5),
-                    (r31_at_a6, r32_at_a6, r33_at_a5),
-                ),
-                (cos_a5,),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_a6, r12_at_a6, r13_at_a5), (r21_at_a6, r22_at_a6, -sin_a5), (r31_at_a6, r32_at_a6, r33_at_a5)),
+            (cos_a5,),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -111,65 +100,54 @@ class ArrayPrograms(Programs):
         turn_a4, turn_a5, turn_a6 = turns
         _, _, _, ref_a4, ref_a5, ref_a6 = reference
         k = self.constants
-        flange_x = k.flange_x
-        flange_y = k.flange_y
-        flange_z = k.flange_z
-        mid_a4 = k.mid_a4
-        mid_a5 = k.mid_a5
-        mid_a6 = k.mid_a6
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        single_a4 = k.single_a4
-        single_a5 = k.single_a5
-        single_a6 = k.single_a6
+        flange_x, flange_y, flange_z, mid_a4, mid_a5 = k.flange_x, k.flange_y, k.flange_z, k.mid_a4, k.mid_a5
+        mid_a6, offset_a1, offset_a2, offset_a3 = k.mid_a6, k.offset_a1, k.offset_a2, k.offset_a3
+        offset_a4, offset_a5, offset_a6, single_a4 = k.offset_a4, k.offset_a5, k.offset_a6, k.single_a4
+        single_a5, single_a6 = k.single_a5, k.single_a6
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a4) <= 1e9)
+            & (absolute(ref_a5) <= 1e9)
+            & (absolute(ref_a6) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
+        wrist_x = x - flange_x * r11 - flange_y * r12 - flange_z * r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
-        wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
+        wrist_y = y - flange_x * r21 - flange_y * r22 - flange_z * r23
         axis_a2 = offset_a2 + wrist_y
-        wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
+        wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         axis_a3 = offset_a3 + wrist_z
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        radius_a4 = sqrt(r13 * r13 + r33 * r33)  # a4: direction and distance of a point
 
         def elsewhere_direction_x_a4(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_a4 = cos(free_a4)  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            free_a4 = (ref_a4 - offset_a4) * DEGREE
+            # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_x_a4 = cos(free_a4)
             direction_y_a4 = sin(free_a4)
             return (direction_x_a4, direction_y_a4)
 
         # a4: polar angle in the r33 and r13 equations; its reference where it is free
-        direction_x_a4 = sigma_wrist*r33
-        direction_y_a4 = sigma_wrist*r13
+        direction_x_a4 = sigma_wrist * r33
+        direction_y_a4 = sigma_wrist * r13
         direction_x_a4, direction_y_a4 = elsewhere(
-            radius_a4 > 1e-11,
-            (direction_x_a4, direction_y_a4),
-            elsewhere_direction_x_a4,
-            (ref_a4,),
+            radius_a4 > 1e-11, (direction_x_a4, direction_y_a4), elsewhere_direction_x_a4, (ref_a4,)
         )
         open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         axis_a4 = nearest_period(offset_a4 + degrees(direction_y_a4, direction_x_a4), near_a4)  # A4: its turn
-        a4_radius_of_a5 = sigma_wrist*radius_a4
+        a4_radius_of_a5 = sigma_wrist * radius_a4
         open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
+        near_a5 = select(turn_a5 != 0, 360.0 * select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         axis_a5 = nearest_period(offset_a5 + degrees(-r23, a4_radius_of_a5), near_a5)  # A5: its turn
-        scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
-        direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
+        scaled_r11_from_a4 = direction_x_a4 * r11 - direction_y_a4 * r31
+        direction_y_a6 = direction_y_a4 * r32 - direction_x_a4 * r12
         open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
+        near_a6 = select(turn_a6 != 0, 360.0 * select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         axis_a6 = nearest_period(offset_a6 + degrees(direction_y_a6, scaled_r11_from_a4), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
@@ -177,18 +155,9 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        highest_a4 = k.highest_a4
-        highest_a5 = k.highest_a5
-        highest_a6 = k.highest_a6
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        lowest_a4 = k.lowest_a4
-        lowest_a5 = k.lowest_a5
-        lowest_a6 = k.lowest_a6
+        highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+        highest_a5, highest_a6, lowest_a1, lowest_a2 = k.highest_a5, k.highest_a6, k.lowest_a1, k.lowest_a2
+        lowest_a3, lowest_a4, lowest_a5, lowest_a6 = k.lowest_a3, k.lowest_a4, k.lowest_a5, k.lowest_a6
         status = passed(axes)
         # limits of A4
         require(status, (axis_a4 >= lowest_a4) & (axis_a4 <= highest_a4), Status.UNREACHABLE)
@@ -205,7 +174,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -213,41 +182,32 @@ class ArrayPrograms(Programs):
         turn_a4, turn_a5, turn_a6 = turns
         _, _, _, ref_a4, ref_a5, ref_a6 = reference
         k = self.constants
-        flange_x = k.flange_x
-        flange_y = k.flange_y
-        flange_z = k.flange_z
-        mid_a4 = k.mid_a4
-        mid_a5 = k.mid_a5
-        mid_a6 = k.mid_a6
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        single_a4 = k.single_a4
-        single_a5 = k.single_a5
-        single_a6 = k.single_a6
+        flange_x, flange_y, flange_z, mid_a4, mid_a5 = k.flange_x, k.flange_y, k.flange_z, k.mid_a4, k.mid_a5
+        mid_a6, offset_a1, offset_a2, offset_a3 = k.mid_a6, k.offset_a1, k.offset_a2, k.offset_a3
+        offset_a4, offset_a5, offset_a6, single_a4 = k.offset_a4, k.offset_a5, k.offset_a6, k.single_a4
+        single_a5, single_a6 = k.single_a5, k.single_a6
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a4) <= 1e9)
+            & (absolute(ref_a5) <= 1e9)
+            & (absolute(ref_a6) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
+        wrist_x = x - flange_x * r11 - flange_y * r12 - flange_z * r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
-        wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
+        wrist_y = y - flange_x * r21 - flange_y * r22 - flange_z * r23
         axis_a2 = offset_a2 + wrist_y
-        wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
+        wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         axis_a3 = offset_a3 + wrist_z
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        radius_a4 = sqrt(r13 * r13 + r33 * r33)  # a4: direction and distance of a point
 
         def elsewhere_direction_x_a4_upright(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            free_a4 = (ref_a4 - offset_a4) * DEGREE
             # a4: polar angle in the r33 and r13 equations; its reference where it is free
             direction_x_a4_upright = cos(free_a4)
             direction_y_a4_upright = sin(free_a4)
@@ -258,7 +218,8 @@ class ArrayPrograms(Programs):
 
         direction_x_a4_upright = r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
         direction_y_a4_upright = r13
-        direction_x_a4_flipped = -r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        direction_x_a4_flipped = -r33
         direction_y_a4_flipped = -r13
         direction_x_a4_upright, direction_y_a4_upright, direction_x_a4_flipped, direction_y_a4_flipped = elsewhere(
             radius_a4 > 1e-11,
@@ -267,30 +228,28 @@ class ArrayPrograms(Programs):
             (ref_a4,),
         )
         open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # A4: its turn
         axis_a4_upright = nearest_period(offset_a4 + degrees(direction_y_a4_upright, direction_x_a4_upright), near_a4)
         open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
+        near_a5 = select(turn_a5 != 0, 360.0 * select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         axis_a5_upright = nearest_period(offset_a5 + degrees(-r23, radius_a4), near_a5)  # A5: its turn
-        scaled_r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
-        direction_y_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
+        scaled_r11_from_a4_upright = direction_x_a4_upright * r11 - direction_y_a4_upright * r31
+        direction_y_a6_upright = direction_y_a4_upright * r32 - direction_x_a4_upright * r12
         open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
+        near_a6 = select(turn_a6 != 0, 360.0 * select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         # A6: its turn
         axis_a6_upright = nearest_period(
-            offset_a6 + degrees(direction_y_a6_upright, scaled_r11_from_a4_upright),
-            near_a6,
+            offset_a6 + degrees(direction_y_a6_upright, scaled_r11_from_a4_upright), near_a6
         )
         # A4: its turn
         axis_a4_flipped = nearest_period(offset_a4 + degrees(direction_y_a4_flipped, direction_x_a4_flipped), near_a4)
         axis_a5_flipped = nearest_period(offset_a5 + degrees(-r23, -radius_a4), near_a5)  # A5: its turn
-        scaled_r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
-        direction_y_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
+        scaled_r11_from_a4_flipped = direction_x_a4_flipped * r11 - direction_y_a4_flipped * r31
+        direction_y_a6_flipped = direction_y_a4_flipped * r32 - direction_x_a4_flipped * r12
         # A6: its turn
         axis_a6_flipped = nearest_period(
-            offset_a6 + degrees(direction_y_a6_flipped, scaled_r11_from_a4_flipped),
-            near_a6,
+            offset_a6 + degrees(direction_y_a6_flipped, scaled_r11_from_a4_flipped), near_a6
         )
         return (
             ((axis_a1, axis_a2, axis_a3, axis_a4_upright, axis_a5_upright, axis_a6_upright), status),

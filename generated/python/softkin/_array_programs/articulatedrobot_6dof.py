@@ -46,111 +46,94 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
-        a1 = k.a1
-        a2 = k.a2
-        a3 = k.a3
-        d1 = k.d1
-        d3 = k.d3
-        d4 = k.d4
-        d6 = k.d6
-        effective_q3 = k.effective_q3
-        machine_scale = k.machine_scale
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
+        a1, a2, a3, d1, d3, d4, d6, effective_q3 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.d6, k.effective_q3
+        machine_scale, offset_a1, offset_a2, offset_a3 = k.machine_scale, k.offset_a1, k.offset_a2, k.offset_a3
+        offset_a4, offset_a5, offset_a6 = k.offset_a4, k.offset_a5, k.offset_a6
         status = passed(axes)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9) & (absolute(axis_a5) <= 1e9) & (absolute(axis_a6) <= 1e9)
-            ),
+            (absolute(axis_a1) <= 1e9)
+            & (absolute(axis_a2) <= 1e9)
+            & (absolute(axis_a3) <= 1e9)
+            & (absolute(axis_a4) <= 1e9)
+            & (absolute(axis_a5) <= 1e9)
+            & (absolute(axis_a6) <= 1e9),
             Status.BAD_INPUT,
         )
-        q5 = DEGREE*(axis_a5 - offset_a5)
+        q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         cos_q1 = cos(q1)
-        q2 = DEGREE*(axis_a2 - offset_a2)
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        q2 = DEGREE * (axis_a2 - offset_a2)
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1*cos_q23
+        r12_at_q23 = -cos_q1 * cos_q23
         sin_q1 = sin(q1)
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1*sin_q23
-        q4 = DEGREE*(axis_a4 - offset_a4)
+        r11_at_q23 = -cos_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r11_at_q4 = r11_at_q23*cos_q4 + sin_q1*sin_q4
+        r11_at_q4 = r11_at_q23 * cos_q4 + sin_q1 * sin_q4
         cos_q5 = cos(q5)
-        r12_at_q5 = -r12_at_q23*cos_q5 - r11_at_q4*sin_q5
-        x_at_q2 = a1*cos_q1
+        r12_at_q5 = -r12_at_q23 * cos_q5 - r11_at_q4 * sin_q5
+        x_at_q2 = a1 * cos_q1
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r11_at_q2
-        x_at_q4 = x_at_q3 + a3*r11_at_q23 + d3*sin_q1
-        x_at_q5 = x_at_q4 - d4*r12_at_q23
-        d6_times_r12_at_q5 = d6*r12_at_q5
+        r11_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r11_at_q2
+        x_at_q4 = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1
+        x_at_q5 = x_at_q4 - d4 * r12_at_q23
+        d6_times_r12_at_q5 = d6 * r12_at_q5
         x = d6_times_r12_at_q5 + x_at_q5
-        r22_at_q23 = -cos_q23*sin_q1
-        r21_at_q23 = -sin_q1*sin_q23
-        r21_at_q4 = r21_at_q23*cos_q4 - cos_q1*sin_q4
-        r22_at_q5 = -r22_at_q23*cos_q5 - r21_at_q4*sin_q5
-        y_at_q2 = a1*sin_q1
-        r21_at_q2 = -sin_q1*sin_q2
-        y_at_q3 = y_at_q2 + a2*r21_at_q2
-        y_at_q4 = y_at_q3 + a3*r21_at_q23 - d3*cos_q1
-        y_at_q5 = y_at_q4 - d4*r22_at_q23
-        d6_times_r22_at_q5 = d6*r22_at_q5
+        r22_at_q23 = -cos_q23 * sin_q1
+        r21_at_q23 = -sin_q1 * sin_q23
+        r21_at_q4 = r21_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r22_at_q5 = -r22_at_q23 * cos_q5 - r21_at_q4 * sin_q5
+        y_at_q2 = a1 * sin_q1
+        r21_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r21_at_q2
+        y_at_q4 = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1
+        y_at_q5 = y_at_q4 - d4 * r22_at_q23
+        d6_times_r22_at_q5 = d6 * r22_at_q5
         y = d6_times_r22_at_q5 + y_at_q5
-        r31_at_q4 = cos_q23*cos_q4
-        r32_at_q5 = cos_q5*sin_q23 - r31_at_q4*sin_q5
+        r31_at_q4 = cos_q23 * cos_q4
+        r32_at_q5 = cos_q5 * sin_q23 - r31_at_q4 * sin_q5
         cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z_at_q4 = z_at_q3 + a3*cos_q23
-        z_at_q5 = z_at_q4 + d4*sin_q23
-        z = z_at_q5 + d6*r32_at_q5
-        r12_at_q4 = cos_q4*sin_q1 - r11_at_q23*sin_q4
-        r11_at_q5 = r11_at_q4*cos_q5 - r12_at_q23*sin_q5
-        q6 = DEGREE*(axis_a6 - offset_a6)
+        z_at_q3 = d1 + a2 * cos_q2
+        z_at_q4 = z_at_q3 + a3 * cos_q23
+        z_at_q5 = z_at_q4 + d4 * sin_q23
+        z = z_at_q5 + d6 * r32_at_q5
+        r12_at_q4 = cos_q4 * sin_q1 - r11_at_q23 * sin_q4
+        r11_at_q5 = r11_at_q4 * cos_q5 - r12_at_q23 * sin_q5
+        q6 = DEGREE * (axis_a6 - offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
-        r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
-        r22_at_q4 = -cos_q1*cos_q4 - r21_at_q23*sin_q4
-        r21_at_q5 = r21_at_q4*cos_q5 - r22_at_q23*sin_q5
-        r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
-        r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
-        r32_at_q4 = -cos_q23*sin_q4
-        r31_at_q5 = r31_at_q4*cos_q5 + sin_q23*sin_q5
-        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
-        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
+        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
+        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
+        r22_at_q4 = -cos_q1 * cos_q4 - r21_at_q23 * sin_q4
+        r21_at_q5 = r21_at_q4 * cos_q5 - r22_at_q23 * sin_q5
+        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
+        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
+        r32_at_q4 = -cos_q23 * sin_q4
+        r31_at_q5 = r31_at_q4 * cos_q5 + sin_q23 * sin_q5
+        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
+        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
         wrist_x = x - d6_times_r12_at_q5  # the point that the last joints turn about
         wrist_y = y - d6_times_r22_at_q5
-        branch_arm = (wrist_x*cos_q1 + wrist_y*sin_q1)/machine_scale
+        branch_arm = (wrist_x * cos_q1 + wrist_y * sin_q1) / machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = (d4*cos_q3 - a3*sin_q3)/effective_q3
+        branch_elbow = (d4 * cos_q3 - a3 * sin_q3) / effective_q3
         return (
-            (
-                (x, y, z),
-                (
-                    (r11_at_q6, r12_at_q6, r12_at_q5),
-                    (r21_at_q6, r22_at_q6, r22_at_q5),
-                    (r31_at_q6, r32_at_q6, r32_at_q5),
-                ),
-                (branch_arm, branch_elbow, sin_q5),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_q6, r12_at_q6, r12_at_q5), (r21_at_q6, r22_at_q6, r22_at_q5), (r31_at_q6, r32_at_q6, r32_at_q5)),
+            (branch_arm, branch_elbow, sin_q5),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -159,115 +142,93 @@ class ArrayPrograms(Programs):
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self.constants
-        a1 = k.a1
-        a2 = k.a2
-        a2_minus_effective_q3 = k.a2_minus_effective_q3
+        a1, a2, a2_minus_effective_q3 = k.a1, k.a2, k.a2_minus_effective_q3
         a2_plus_effective_q3 = k.a2_plus_effective_q3
         a2_squared_plus_effective_q3_squared = k.a2_squared_plus_effective_q3_squared
-        a3_by_effective_q3 = k.a3_by_effective_q3
-        d1 = k.d1
-        d3 = k.d3
-        d4_by_effective_q3 = k.d4_by_effective_q3
-        d6 = k.d6
-        effective_q3 = k.effective_q3
-        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        a3_by_effective_q3, d1, d3, d4_by_effective_q3 = k.a3_by_effective_q3, k.d1, k.d3, k.d4_by_effective_q3
+        d6, effective_q3, machine_scale_squared_times_plane = k.d6, k.effective_q3, k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        mid_a4 = k.mid_a4
-        mid_a5 = k.mid_a5
-        mid_a6 = k.mid_a6
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        rounding_q1 = k.rounding_q1
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        single_a4 = k.single_a4
-        single_a5 = k.single_a5
-        single_a6 = k.single_a6
-        size_q1_for_q3 = k.size_q1_for_q3
-        size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
-        swing_scale_q3_squared_times_rounding = k.swing_scale_q3_squared_times_rounding
-        twice_d3 = k.twice_d3
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        offset_a6, rounding_q1, single_a1, single_a2 = k.offset_a6, k.rounding_q1, k.single_a1, k.single_a2
+        single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
+        size_q1_for_q3, size_q1_for_q3_times_rounding = k.size_q1_for_q3, k.size_q1_for_q3_times_rounding
+        swing_scale_q3_squared_times_rounding, twice_d3 = k.swing_scale_q3_squared_times_rounding, k.twice_d3
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(ref_a4) <= 1e9)
+            & (absolute(ref_a5) <= 1e9)
+            & (absolute(ref_a6) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        wrist_x = x - d6*r13  # the point that the last joints turn about
-        wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        distance_q1_squared = distance_q1*distance_q1
+        wrist_x = x - d6 * r13  # the point that the last joints turn about
+        wrist_y = y - d6 * r23
+        distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # q1: of the point from its axis
+        ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1 * distance_q1
         # q1: out of reach
-        require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
-        wrist_z = z - d6*r33
+        require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1, Status.UNREACHABLE)
+        wrist_z = z - d6 * r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
+        wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind
-        ahead_q1_before_q1_for_q3 = root(ahead_squared_q1)*sigma_arm
+        ahead_q1_before_q1_for_q3 = root(ahead_squared_q1) * sigma_arm
         wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
         # a later step needs this of q1: no larger in size than
         value_q1_for_q3 = (
-            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+            wrist_y_from_q1_squared
+            + wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
             - a2_squared_plus_effective_q3_squared
         )
-        rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+        rate_q1_for_q3 = -twice_d3 * wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
 
         def elsewhere_turn_q1_for_q3() -> Reals:
             turn_q1_for_q3 = 0.0  # to the boundary of the later step
             return (turn_q1_for_q3,)
 
         excess_q1_for_q3 = select(
-            value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3,
+            value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3
         )
-        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
+        turn_q1_for_q3 = -excess_q1_for_q3 / rate_q1_for_q3  # to the boundary of the later step
         (turn_q1_for_q3,) = elsewhere(
-            absolute(rate_q1_for_q3) > size_q1_for_q3_times_rounding,
-            (turn_q1_for_q3,),
-            elsewhere_turn_q1_for_q3,
-            (),
+            absolute(rate_q1_for_q3) > size_q1_for_q3_times_rounding, (turn_q1_for_q3,), elsewhere_turn_q1_for_q3, ()
         )
-        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-        one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
+        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3 * turn_q1_for_q3)
+        one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
+        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3 * turn_q1_for_q3) * one_by_turned_length_q1_for_q3
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)  # its reference where it is free
             sin_q1_before_q1_for_q3 = sin(free_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
         # its reference where it is free
-        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/distance_q1_squared
-        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/distance_q1_squared
+        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / distance_q1_squared
+        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d3 * wrist_x) / distance_q1_squared
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
             elsewhere_cos_q1_before_q1_for_q3,
             (ref_a1,),
         )
-        turned_cos_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
+        turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+            cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
         )
-        turned_sin_q1_for_q3 = (
-            one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
+        turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+            sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
         )
         # what is left of its own equation
-        turned_cost_q1_for_q3 = absolute(d3 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
+        turned_cost_q1_for_q3 = absolute(d3 + turned_cos_q1_for_q3 * wrist_y - turned_sin_q1_for_q3 * wrist_x)
         # turned within rounding, where the rest can be reached
         ahead_q1 = select(
             ahead_squared_q1 > machine_scale_squared_times_plane,
@@ -276,28 +237,37 @@ class ArrayPrograms(Programs):
                 absolute(value_q1_for_q3) <= size_q1_for_q3,
                 ahead_q1_before_q1_for_q3,
                 select(
-                    turned_cost_q1_for_q3 > machine_scale_times_rounding, ahead_q1_before_q1_for_q3,
+                    turned_cost_q1_for_q3 > machine_scale_times_rounding,
+                    ahead_q1_before_q1_for_q3,
                     turned_ahead_q1_for_q3,
                 ),
             ),
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
-        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
-        one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)  # 1 - cosine, times the scale
+        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
+        # 1 - cosine, times the scale
+        one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
         require(status, sine_square_q3 >= -swing_scale_q3_squared_times_rounding, Status.UNREACHABLE)
 
         def elsewhere_cos_q1(
-            cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real, turned_cos_q1_for_q3: Real,
-            turned_cost_q1_for_q3: Real, turned_sin_q1_for_q3: Real, value_q1_for_q3: Real,
+            cos_q1_before_q1_for_q3: Real,
+            sin_q1_before_q1_for_q3: Real,
+            turned_cos_q1_for_q3: Real,
+            turned_cost_q1_for_q3: Real,
+            turned_sin_q1_for_q3: Real,
+            value_q1_for_q3: Real,
         ) -> Reals:
 
             def elsewhere_cos_q1(
-                cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real, turned_cos_q1_for_q3: Real,
-                turned_cost_q1_for_q3: Real, turned_sin_q1_for_q3: Real,
+                cos_q1_before_q1_for_q3: Real,
+                sin_q1_before_q1_for_q3: Real,
+                turned_cos_q1_for_q3: Real,
+                turned_cost_q1_for_q3: Real,
+                turned_sin_q1_for_q3: Real,
             ) -> Reals:
 
                 def elsewhere_cos_q1(turned_cos_q1_for_q3: Real, turned_sin_q1_for_q3: Real) -> Reals:
@@ -322,7 +292,10 @@ class ArrayPrograms(Programs):
                 (cos_q1, sin_q1),
                 elsewhere_cos_q1,
                 (
-                    cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, turned_cos_q1_for_q3, turned_cost_q1_for_q3,
+                    cos_q1_before_q1_for_q3,
+                    sin_q1_before_q1_for_q3,
+                    turned_cos_q1_for_q3,
+                    turned_cost_q1_for_q3,
                     turned_sin_q1_for_q3,
                 ),
             )
@@ -335,92 +308,89 @@ class ArrayPrograms(Programs):
             (cos_q1, sin_q1),
             elsewhere_cos_q1,
             (
-                cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, turned_cos_q1_for_q3, turned_cost_q1_for_q3,
-                turned_sin_q1_for_q3, value_q1_for_q3,
+                cos_q1_before_q1_for_q3,
+                sin_q1_before_q1_for_q3,
+                turned_cos_q1_for_q3,
+                turned_cost_q1_for_q3,
+                turned_sin_q1_for_q3,
+                value_q1_for_q3,
             ),
         )
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
         sum_q3 = select(both_q3 > 0.0, both_q3, 1.0)
-        sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/sum_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sin_swing_q3 = -2.0 * root(sine_square_q3) * sigma_elbow / sum_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / sum_q3
 
         def elsewhere_cos_q2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             cos_q2 = cos(free_a2)  # its reference where it is free
             sin_q2 = sin(free_a2)
             return (cos_q2, sin_q2)
 
-        arm_along_q2 = -effective_q3*sin_swing_q3
-        arm_across_q2 = a2 + effective_q3*cos_swing_q3
+        arm_along_q2 = -effective_q3 * sin_swing_q3
+        arm_across_q2 = a2 + effective_q3 * cos_swing_q3
         # q2: linear pair in the x_from_q1 and y_from_q1 equations
-        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-        across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2
+        along_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
+        across_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
+        across_q2_squared_plus_along_q2_squared = across_q2 * across_q2 + along_q2 * along_q2
         length_q2 = select(
-            across_q2_squared_plus_along_q2_squared > 0.0,
-            root(across_q2_squared_plus_along_q2_squared),
-            1.0,
+            across_q2_squared_plus_along_q2_squared > 0.0, root(across_q2_squared_plus_along_q2_squared), 1.0
         )
-        cos_q2 = along_q2/length_q2  # its reference where it is free
-        sin_q2 = across_q2/length_q2
+        cos_q2 = along_q2 / length_q2  # its reference where it is free
+        sin_q2 = across_q2 / length_q2
         cos_q2, sin_q2 = elsewhere(
-            reach > machine_scale_times_free_angle,
-            (cos_q2, sin_q2),
-            elsewhere_cos_q2,
-            (ref_a2,),
+            reach > machine_scale_times_free_angle, (cos_q2, sin_q2), elsewhere_cos_q2, (ref_a2,)
         )
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: its turn
-        cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3
-        sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3
+        cos_q3 = a3_by_effective_q3 * cos_swing_q3 - d4_by_effective_q3 * sin_swing_q3
+        sin_q3 = a3_by_effective_q3 * sin_swing_q3 + d4_by_effective_q3 * cos_swing_q3
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
-        r13_from_q1 = r13*cos_q1 + r23*sin_q1
-        sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
-        cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
-        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
-        r23_from_q1 = r23*cos_q1 - r13*sin_q1
+        r13_from_q1 = r13 * cos_q1 + r23 * sin_q1
+        sin_q23 = cos_q2 * sin_q3 + cos_q3 * sin_q2
+        cos_q23 = cos_q2 * cos_q3 - sin_q2 * sin_q3
+        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
+        r23_from_q1 = r23 * cos_q1 - r13 * sin_q1
         # q4: direction and distance of a point
-        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
 
         def elsewhere_direction_x_q4(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4 = cos(free_a4)  # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            free_a4 = (ref_a4 - offset_a4) * DEGREE
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4 = cos(free_a4)
             direction_y_q4 = sin(free_a4)
             return (direction_x_q4, direction_y_q4)
 
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
-        direction_x_q4 = -sigma_hand*r13_from_q123
-        direction_y_q4 = sigma_hand*r23_from_q1
+        direction_x_q4 = -sigma_hand * r13_from_q123
+        direction_y_q4 = sigma_hand * r23_from_q1
         direction_x_q4, direction_y_q4 = elsewhere(
-            radius_q4 > 1e-11,
-            (direction_x_q4, direction_y_q4),
-            elsewhere_direction_x_q4,
-            (ref_a4,),
+            radius_q4 > 1e-11, (direction_x_q4, direction_y_q4), elsewhere_direction_x_q4, (ref_a4,)
         )
         open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         axis_a4 = nearest_period(offset_a4 + degrees(direction_y_q4, direction_x_q4), near_a4)  # A4: its turn
-        q4_radius_of_q5 = sigma_hand*radius_q4
-        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        q4_radius_of_q5 = sigma_hand * radius_q4
+        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # q5: linear pair in the q4 radius and r23 equations
         open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
+        near_a5 = select(turn_a5 != 0, 360.0 * select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         axis_a5 = nearest_period(offset_a5 + degrees(q4_radius_of_q5, cos_q5), near_a5)  # A5: its turn
-        r21_from_q1 = r21*cos_q1 - r11*sin_q1
-        r11_from_q1 = r11*cos_q1 + r21*sin_q1
-        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        scaled_r21_from_q1234 = -direction_x_q4*r21_from_q1 - direction_y_q4*r11_from_q123
-        r22_from_q1 = r22*cos_q1 - r12*sin_q1
-        r12_from_q1 = r12*cos_q1 + r22*sin_q1
-        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        scaled_r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
+        r21_from_q1 = r21 * cos_q1 - r11 * sin_q1
+        r11_from_q1 = r11 * cos_q1 + r21 * sin_q1
+        r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
+        scaled_r21_from_q1234 = -direction_x_q4 * r21_from_q1 - direction_y_q4 * r11_from_q123
+        r22_from_q1 = r22 * cos_q1 - r12 * sin_q1
+        r12_from_q1 = r12 * cos_q1 + r22 * sin_q1
+        r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
+        scaled_r22_from_q1234 = -direction_x_q4 * r22_from_q1 - direction_y_q4 * r12_from_q123
         open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
+        near_a6 = select(turn_a6 != 0, 360.0 * select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         # A6: its turn
         axis_a6 = nearest_period(offset_a6 + degrees(scaled_r21_from_q1234, scaled_r22_from_q1234), near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
@@ -429,18 +399,9 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        highest_a4 = k.highest_a4
-        highest_a5 = k.highest_a5
-        highest_a6 = k.highest_a6
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        lowest_a4 = k.lowest_a4
-        lowest_a5 = k.lowest_a5
-        lowest_a6 = k.lowest_a6
+        highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+        highest_a5, highest_a6, lowest_a1, lowest_a2 = k.highest_a5, k.highest_a6, k.lowest_a1, k.lowest_a2
+        lowest_a3, lowest_a4, lowest_a5, lowest_a6 = k.lowest_a3, k.lowest_a4, k.lowest_a5, k.lowest_a6
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -457,7 +418,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -465,83 +426,63 @@ class ArrayPrograms(Programs):
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self.constants
-        a1 = k.a1
-        a2 = k.a2
-        a2_minus_effective_q3 = k.a2_minus_effective_q3
+        a1, a2, a2_minus_effective_q3 = k.a1, k.a2, k.a2_minus_effective_q3
         a2_plus_effective_q3 = k.a2_plus_effective_q3
         a2_squared_plus_effective_q3_squared = k.a2_squared_plus_effective_q3_squared
-        a3_by_effective_q3 = k.a3_by_effective_q3
-        d1 = k.d1
-        d3 = k.d3
-        d4_by_effective_q3 = k.d4_by_effective_q3
-        d6 = k.d6
-        effective_q3 = k.effective_q3
-        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        a3_by_effective_q3, d1, d3, d4_by_effective_q3 = k.a3_by_effective_q3, k.d1, k.d3, k.d4_by_effective_q3
+        d6, effective_q3, machine_scale_squared_times_plane = k.d6, k.effective_q3, k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        mid_a4 = k.mid_a4
-        mid_a5 = k.mid_a5
-        mid_a6 = k.mid_a6
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        rounding_q1 = k.rounding_q1
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        single_a4 = k.single_a4
-        single_a5 = k.single_a5
-        single_a6 = k.single_a6
-        size_q1_for_q3 = k.size_q1_for_q3
-        size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
-        swing_scale_q3_squared_times_rounding = k.swing_scale_q3_squared_times_rounding
-        twice_d3 = k.twice_d3
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        offset_a6, rounding_q1, single_a1, single_a2 = k.offset_a6, k.rounding_q1, k.single_a1, k.single_a2
+        single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
+        size_q1_for_q3, size_q1_for_q3_times_rounding = k.size_q1_for_q3, k.size_q1_for_q3_times_rounding
+        swing_scale_q3_squared_times_rounding, twice_d3 = k.swing_scale_q3_squared_times_rounding, k.twice_d3
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(ref_a4) <= 1e9)
+            & (absolute(ref_a5) <= 1e9)
+            & (absolute(ref_a6) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        wrist_x = x - d6*r13  # the point that the last joints turn about
-        wrist_y = y - d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        distance_q1_squared = distance_q1*distance_q1
+        wrist_x = x - d6 * r13  # the point that the last joints turn about
+        wrist_y = y - d6 * r23
+        distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # q1: of the point from its axis
+        ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        distance_q1_squared = distance_q1 * distance_q1
         # q1: out of reach
-        require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1, Status.UNREACHABLE)
-        wrist_z = z - d6*r33
+        require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1, Status.UNREACHABLE)
+        wrist_z = z - d6 * r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
+        wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind
         ahead_q1_before_q1_for_q3_front = root(ahead_squared_q1)
         wrist_x_from_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front - a1
         # a later step needs this of q1: no larger in size than
         value_q1_for_q3_front = (
-            wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3_front*wrist_x_from_q1_before_q1_for_q3_front
+            wrist_y_from_q1_squared
+            + wrist_x_from_q1_before_q1_for_q3_front * wrist_x_from_q1_before_q1_for_q3_front
             - a2_squared_plus_effective_q3_squared
         )
-        rate_q1_for_q3_front = -twice_d3*wrist_x_from_q1_before_q1_for_q3_front  # how it changes with q1
+        rate_q1_for_q3_front = -twice_d3 * wrist_x_from_q1_before_q1_for_q3_front  # how it changes with q1
 
         def elsewhere_turn_q1_for_q3_front() -> Reals:
             turn_q1_for_q3_front = 0.0  # to the boundary of the later step
             return (turn_q1_for_q3_front,)
 
         excess_q1_for_q3_front = select(
-            value_q1_for_q3_front > 0.0, value_q1_for_q3_front - size_q1_for_q3,
-            size_q1_for_q3 + value_q1_for_q3_front,
+            value_q1_for_q3_front > 0.0, value_q1_for_q3_front - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3_front
         )
-        turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # to the boundary of the later step
+        turn_q1_for_q3_front = -excess_q1_for_q3_front / rate_q1_for_q3_front  # to the boundary of the later step
         (turn_q1_for_q3_front,) = elsewhere(
             absolute(rate_q1_for_q3_front) > size_q1_for_q3_times_rounding,
             (turn_q1_for_q3_front,),
@@ -550,75 +491,95 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_cos_q1_before_q1_for_q3_front(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3_front = cos(free_a1)  # its reference where it is free
             sin_q1_before_q1_for_q3_front = sin(free_a1)
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front  # its reference where it is free
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
             return (
-                cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back,
+                cos_q1_before_q1_for_q3_front,
+                sin_q1_before_q1_for_q3_front,
+                cos_q1_before_q1_for_q3_back,
                 sin_q1_before_q1_for_q3_back,
             )
 
         # its reference where it is free
-        cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/distance_q1_squared
-        sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_y + d3*wrist_x)/distance_q1_squared
+        cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front * wrist_x - d3 * wrist_y) / distance_q1_squared
+        sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front * wrist_y + d3 * wrist_x) / distance_q1_squared
         # its reference where it is free
-        cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/distance_q1_squared
-        sin_q1_before_q1_for_q3_back = (d3*wrist_x - ahead_q1_before_q1_for_q3_front*wrist_y)/distance_q1_squared
-        found = elsewhere(
+        cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front * wrist_x - d3 * wrist_y) / distance_q1_squared
+        sin_q1_before_q1_for_q3_back = (d3 * wrist_x - ahead_q1_before_q1_for_q3_front * wrist_y) / distance_q1_squared
+        (
+            cos_q1_before_q1_for_q3_front,
+            sin_q1_before_q1_for_q3_front,
+            cos_q1_before_q1_for_q3_back,
+            sin_q1_before_q1_for_q3_back,
+        ) = elsewhere(
             distance_q1 > machine_scale_times_free_angle,
             (
-                cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back,
+                cos_q1_before_q1_for_q3_front,
+                sin_q1_before_q1_for_q3_front,
+                cos_q1_before_q1_for_q3_back,
                 sin_q1_before_q1_for_q3_back,
             ),
             elsewhere_cos_q1_before_q1_for_q3_front,
             (ref_a1,),
         )
-        (
-            cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back,
-            sin_q1_before_q1_for_q3_back,
-        ) = found
 
         def elsewhere_ahead_q1_front(
-            ahead_q1_before_q1_for_q3_front: Real, cos_q1_before_q1_for_q3_back: Real,
-            cos_q1_before_q1_for_q3_front: Real, sin_q1_before_q1_for_q3_back: Real,
-            sin_q1_before_q1_for_q3_front: Real, turn_q1_for_q3_front: Real, value_q1_for_q3_front: Real,
-            wrist_x: Real, wrist_y: Real, wrist_y_from_q1_squared: Real,
+            ahead_q1_before_q1_for_q3_front: Real,
+            cos_q1_before_q1_for_q3_back: Real,
+            cos_q1_before_q1_for_q3_front: Real,
+            sin_q1_before_q1_for_q3_back: Real,
+            sin_q1_before_q1_for_q3_front: Real,
+            turn_q1_for_q3_front: Real,
+            value_q1_for_q3_front: Real,
+            wrist_x: Real,
+            wrist_y: Real,
+            wrist_y_from_q1_squared: Real,
         ) -> Reals:
-            turned_length_q1_for_q3_front = root(1.0 + turn_q1_for_q3_front*turn_q1_for_q3_front)
-            one_by_turned_length_q1_for_q3_front = 1.0/turned_length_q1_for_q3_front
+            turned_length_q1_for_q3_front = root(1.0 + turn_q1_for_q3_front * turn_q1_for_q3_front)
+            one_by_turned_length_q1_for_q3_front = 1.0 / turned_length_q1_for_q3_front
             turned_ahead_q1_for_q3_front = (
-                (ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_front)*one_by_turned_length_q1_for_q3_front
-            )
+                ahead_q1_before_q1_for_q3_front - d3 * turn_q1_for_q3_front
+            ) * one_by_turned_length_q1_for_q3_front
 
             def elsewhere_ahead_q1_front(
-                ahead_q1_before_q1_for_q3_front: Real, cos_q1_before_q1_for_q3_front: Real,
-                one_by_turned_length_q1_for_q3_front: Real, sin_q1_before_q1_for_q3_front: Real,
-                turn_q1_for_q3_front: Real, turned_ahead_q1_for_q3_front: Real, wrist_x: Real, wrist_y: Real,
+                ahead_q1_before_q1_for_q3_front: Real,
+                cos_q1_before_q1_for_q3_front: Real,
+                one_by_turned_length_q1_for_q3_front: Real,
+                sin_q1_before_q1_for_q3_front: Real,
+                turn_q1_for_q3_front: Real,
+                turned_ahead_q1_for_q3_front: Real,
+                wrist_x: Real,
+                wrist_y: Real,
             ) -> Reals:
-                turned_cos_q1_for_q3_front = (
-                    one_by_turned_length_q1_for_q3_front
-                    *(cos_q1_before_q1_for_q3_front - turn_q1_for_q3_front*sin_q1_before_q1_for_q3_front)
+                turned_cos_q1_for_q3_front = one_by_turned_length_q1_for_q3_front * (
+                    cos_q1_before_q1_for_q3_front - turn_q1_for_q3_front * sin_q1_before_q1_for_q3_front
                 )
-                turned_sin_q1_for_q3_front = (
-                    one_by_turned_length_q1_for_q3_front
-                    *(sin_q1_before_q1_for_q3_front + turn_q1_for_q3_front*cos_q1_before_q1_for_q3_front)
+                turned_sin_q1_for_q3_front = one_by_turned_length_q1_for_q3_front * (
+                    sin_q1_before_q1_for_q3_front + turn_q1_for_q3_front * cos_q1_before_q1_for_q3_front
                 )
                 # what is left of its own equation
                 turned_cost_q1_for_q3_front = absolute(
-                    d3 + turned_cos_q1_for_q3_front*wrist_y - turned_sin_q1_for_q3_front*wrist_x
+                    d3 + turned_cos_q1_for_q3_front * wrist_y - turned_sin_q1_for_q3_front * wrist_x
                 )
 
                 def elsewhere_ahead_q1_front(
-                    turned_ahead_q1_for_q3_front: Real, turned_cos_q1_for_q3_front: Real, turned_sin_q1_for_q3_front: Real,
+                    turned_ahead_q1_for_q3_front: Real,
+                    turned_cos_q1_for_q3_front: Real,
+                    turned_sin_q1_for_q3_front: Real,
                 ) -> Reals:
-                    ahead_q1_front = turned_ahead_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                    ahead_q1_front = (
+                        turned_ahead_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                    )
                     cos_q1_front = turned_cos_q1_for_q3_front  # turned within rounding, where the rest can be reached
                     sin_q1_front = turned_sin_q1_for_q3_front  # turned within rounding, where the rest can be reached
                     return (ahead_q1_front, cos_q1_front, sin_q1_front)
 
-                ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                ahead_q1_front = (
+                    ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                )
                 cos_q1_front = cos_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
                 sin_q1_front = sin_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
                 ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
@@ -637,67 +598,82 @@ class ArrayPrograms(Programs):
                 (ahead_q1_front, cos_q1_front, sin_q1_front),
                 elsewhere_ahead_q1_front,
                 (
-                    ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front, one_by_turned_length_q1_for_q3_front,
-                    sin_q1_before_q1_for_q3_front, turn_q1_for_q3_front, turned_ahead_q1_for_q3_front, wrist_x, wrist_y,
+                    ahead_q1_before_q1_for_q3_front,
+                    cos_q1_before_q1_for_q3_front,
+                    one_by_turned_length_q1_for_q3_front,
+                    sin_q1_before_q1_for_q3_front,
+                    turn_q1_for_q3_front,
+                    turned_ahead_q1_for_q3_front,
+                    wrist_x,
+                    wrist_y,
                 ),
             )
             wrist_x_from_q1_before_q1_for_q3_back = -a1 - ahead_q1_before_q1_for_q3_front
             # a later step needs this of q1: no larger in size than
             value_q1_for_q3_back = (
-                wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3_back*wrist_x_from_q1_before_q1_for_q3_back
+                wrist_y_from_q1_squared
+                + wrist_x_from_q1_before_q1_for_q3_back * wrist_x_from_q1_before_q1_for_q3_back
                 - a2_squared_plus_effective_q3_squared
             )
 
             def elsewhere_ahead_q1_back(
-                ahead_q1_before_q1_for_q3_front: Real, cos_q1_before_q1_for_q3_back: Real,
-                sin_q1_before_q1_for_q3_back: Real, value_q1_for_q3_back: Real, wrist_x: Real,
-                wrist_x_from_q1_before_q1_for_q3_back: Real, wrist_y: Real,
+                ahead_q1_before_q1_for_q3_front: Real,
+                cos_q1_before_q1_for_q3_back: Real,
+                sin_q1_before_q1_for_q3_back: Real,
+                value_q1_for_q3_back: Real,
+                wrist_x: Real,
+                wrist_x_from_q1_before_q1_for_q3_back: Real,
+                wrist_y: Real,
             ) -> Reals:
-                rate_q1_for_q3_back = -twice_d3*wrist_x_from_q1_before_q1_for_q3_back  # how it changes with q1
+                rate_q1_for_q3_back = -twice_d3 * wrist_x_from_q1_before_q1_for_q3_back  # how it changes with q1
 
                 def elsewhere_turn_q1_for_q3_back() -> Reals:
                     turn_q1_for_q3_back = 0.0  # to the boundary of the later step
                     return (turn_q1_for_q3_back,)
 
                 excess_q1_for_q3_back = select(
-                    value_q1_for_q3_back > 0.0, value_q1_for_q3_back - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3_back,
+                    value_q1_for_q3_back > 0.0,
+                    value_q1_for_q3_back - size_q1_for_q3,
+                    size_q1_for_q3 + value_q1_for_q3_back,
                 )
-                turn_q1_for_q3_back = -excess_q1_for_q3_back/rate_q1_for_q3_back  # to the boundary of the later step
+                turn_q1_for_q3_back = -excess_q1_for_q3_back / rate_q1_for_q3_back  # to the boundary of the later step
                 (turn_q1_for_q3_back,) = elsewhere(
                     absolute(rate_q1_for_q3_back) > size_q1_for_q3_times_rounding,
                     (turn_q1_for_q3_back,),
                     elsewhere_turn_q1_for_q3_back,
                     (),
                 )
-                turned_length_q1_for_q3_back = root(1.0 + turn_q1_for_q3_back*turn_q1_for_q3_back)
-                one_by_turned_length_q1_for_q3_back = 1.0/turned_length_q1_for_q3_back
-                turned_cos_q1_for_q3_back = (
-                    one_by_turned_length_q1_for_q3_back
-                    *(cos_q1_before_q1_for_q3_back - turn_q1_for_q3_back*sin_q1_before_q1_for_q3_back)
+                turned_length_q1_for_q3_back = root(1.0 + turn_q1_for_q3_back * turn_q1_for_q3_back)
+                one_by_turned_length_q1_for_q3_back = 1.0 / turned_length_q1_for_q3_back
+                turned_cos_q1_for_q3_back = one_by_turned_length_q1_for_q3_back * (
+                    cos_q1_before_q1_for_q3_back - turn_q1_for_q3_back * sin_q1_before_q1_for_q3_back
                 )
-                turned_sin_q1_for_q3_back = (
-                    one_by_turned_length_q1_for_q3_back
-                    *(sin_q1_before_q1_for_q3_back + turn_q1_for_q3_back*cos_q1_before_q1_for_q3_back)
+                turned_sin_q1_for_q3_back = one_by_turned_length_q1_for_q3_back * (
+                    sin_q1_before_q1_for_q3_back + turn_q1_for_q3_back * cos_q1_before_q1_for_q3_back
                 )
                 # what is left of its own equation
                 turned_cost_q1_for_q3_back = absolute(
-                    d3 + turned_cos_q1_for_q3_back*wrist_y - turned_sin_q1_for_q3_back*wrist_x
+                    d3 + turned_cos_q1_for_q3_back * wrist_y - turned_sin_q1_for_q3_back * wrist_x
                 )
 
                 def elsewhere_ahead_q1_back(
-                    ahead_q1_before_q1_for_q3_front: Real, one_by_turned_length_q1_for_q3_back: Real,
-                    turn_q1_for_q3_back: Real, turned_cos_q1_for_q3_back: Real, turned_sin_q1_for_q3_back: Real,
+                    ahead_q1_before_q1_for_q3_front: Real,
+                    one_by_turned_length_q1_for_q3_back: Real,
+                    turn_q1_for_q3_back: Real,
+                    turned_cos_q1_for_q3_back: Real,
+                    turned_sin_q1_for_q3_back: Real,
                 ) -> Reals:
                     turned_ahead_q1_for_q3_back = (
-                        (-ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_back)
-                        *one_by_turned_length_q1_for_q3_back
-                    )
+                        -ahead_q1_before_q1_for_q3_front - d3 * turn_q1_for_q3_back
+                    ) * one_by_turned_length_q1_for_q3_back
                     ahead_q1_back = turned_ahead_q1_for_q3_back  # turned within rounding, where the rest can be reached
                     cos_q1_back = turned_cos_q1_for_q3_back  # turned within rounding, where the rest can be reached
                     sin_q1_back = turned_sin_q1_for_q3_back  # turned within rounding, where the rest can be reached
                     return (ahead_q1_back, cos_q1_back, sin_q1_back)
 
-                ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                ahead_q1_back = (
+                    -ahead_q1_before_q1_for_q3_front
+                )  # turned within rounding, where the rest can be reached
                 cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
                 sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
                 ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
@@ -705,8 +681,11 @@ class ArrayPrograms(Programs):
                     (ahead_q1_back, cos_q1_back, sin_q1_back),
                     elsewhere_ahead_q1_back,
                     (
-                        ahead_q1_before_q1_for_q3_front, one_by_turned_length_q1_for_q3_back, turn_q1_for_q3_back,
-                        turned_cos_q1_for_q3_back, turned_sin_q1_for_q3_back,
+                        ahead_q1_before_q1_for_q3_front,
+                        one_by_turned_length_q1_for_q3_back,
+                        turn_q1_for_q3_back,
+                        turned_cos_q1_for_q3_back,
+                        turned_sin_q1_for_q3_back,
                     ),
                 )
                 return (ahead_q1_back, cos_q1_back, sin_q1_back)
@@ -719,8 +698,13 @@ class ArrayPrograms(Programs):
                 (ahead_q1_back, cos_q1_back, sin_q1_back),
                 elsewhere_ahead_q1_back,
                 (
-                    ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back, sin_q1_before_q1_for_q3_back,
-                    value_q1_for_q3_back, wrist_x, wrist_x_from_q1_before_q1_for_q3_back, wrist_y,
+                    ahead_q1_before_q1_for_q3_front,
+                    cos_q1_before_q1_for_q3_back,
+                    sin_q1_before_q1_for_q3_back,
+                    value_q1_for_q3_back,
+                    wrist_x,
+                    wrist_x_from_q1_before_q1_for_q3_back,
+                    wrist_y,
                 ),
             )
             return (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back)
@@ -736,57 +720,64 @@ class ArrayPrograms(Programs):
             (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back),
             elsewhere_ahead_q1_front,
             (
-                ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_front,
-                sin_q1_before_q1_for_q3_back, sin_q1_before_q1_for_q3_front, turn_q1_for_q3_front,
-                value_q1_for_q3_front, wrist_x, wrist_y, wrist_y_from_q1_squared,
+                ahead_q1_before_q1_for_q3_front,
+                cos_q1_before_q1_for_q3_back,
+                cos_q1_before_q1_for_q3_front,
+                sin_q1_before_q1_for_q3_back,
+                sin_q1_before_q1_for_q3_front,
+                turn_q1_for_q3_front,
+                value_q1_for_q3_front,
+                wrist_x,
+                wrist_y,
+                wrist_y_from_q1_squared,
             ),
         )
         wrist_x_from_q1_front = ahead_q1_front - a1  # what the unknown links must span
-        reach_front = root(wrist_y_from_q1_squared + wrist_x_from_q1_front*wrist_x_from_q1_front)
+        reach_front = root(wrist_y_from_q1_squared + wrist_x_from_q1_front * wrist_x_from_q1_front)
         # 1 - cosine, times the scale
-        one_less_cos_q3_front = (a2_plus_effective_q3 + reach_front)*(a2_plus_effective_q3 - reach_front)
+        one_less_cos_q3_front = (a2_plus_effective_q3 + reach_front) * (a2_plus_effective_q3 - reach_front)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_front)
-        sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front  # the square of sine times scale
+        one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach_front)
+        sine_square_q3_front = one_less_cos_q3_front * one_plus_cos_q3_front  # the square of sine times scale
         # q3: out of reach
         refusal_front = select(sine_square_q3_front >= -swing_scale_q3_squared_times_rounding, 0, 3)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
         # twice the scale, with the rounding of its parts
         both_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
         sum_q3_front = select(both_q3_front > 0.0, both_q3_front, 1.0)
-        sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/sum_q3_front
-        cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/sum_q3_front
+        sin_swing_q3_front_up = 2.0 * root(sine_square_q3_front) / sum_q3_front
+        cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front) / sum_q3_front
 
         def elsewhere_cos_q2_front_down(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             cos_q2_front_down = cos(free_a2)  # its reference where it is free
             sin_q2_front_down = sin(free_a2)
             cos_q2_front_up = cos_q2_front_down  # its reference where it is free
             sin_q2_front_up = sin_q2_front_down
             return (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up)
 
-        arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up
-        arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front
+        arm_along_q2_front_down = effective_q3 * sin_swing_q3_front_up
+        arm_across_q2_front = a2 + effective_q3 * cos_swing_q3_front
         # q2: linear pair in the x_from_q1 and y_from_q1 equations
-        along_q2_front_down = arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-        across_q2_front_down = arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
+        along_q2_front_down = arm_across_q2_front * wrist_y_from_q1 + arm_along_q2_front_down * wrist_x_from_q1_front
+        across_q2_front_down = arm_along_q2_front_down * wrist_y_from_q1 - arm_across_q2_front * wrist_x_from_q1_front
         across_q2_squared_plus_along_q2_squared_front_down = (
-            across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
+            across_q2_front_down * across_q2_front_down + along_q2_front_down * along_q2_front_down
         )
         length_q2_front_down = select(
             across_q2_squared_plus_along_q2_squared_front_down > 0.0,
             root(across_q2_squared_plus_along_q2_squared_front_down),
             1.0,
         )
-        cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
-        sin_q2_front_down = across_q2_front_down/length_q2_front_down
+        cos_q2_front_down = along_q2_front_down / length_q2_front_down  # its reference where it is free
+        sin_q2_front_down = across_q2_front_down / length_q2_front_down
         # q2: linear pair in the x_from_q1 and y_from_q1 equations
-        along_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
-        cos_q2_front_up = along_q2_front_up/length_q2_front_down  # its reference where it is free
-        across_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
-        sin_q2_front_up = across_q2_front_up/length_q2_front_down
+        along_q2_front_up = arm_across_q2_front * wrist_y_from_q1 - arm_along_q2_front_down * wrist_x_from_q1_front
+        cos_q2_front_up = along_q2_front_up / length_q2_front_down  # its reference where it is free
+        across_q2_front_up = -arm_across_q2_front * wrist_x_from_q1_front - arm_along_q2_front_down * wrist_y_from_q1
+        sin_q2_front_up = across_q2_front_up / length_q2_front_down
         cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up = elsewhere(
             reach_front > machine_scale_times_free_angle,
             (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up),
@@ -794,27 +785,27 @@ class ArrayPrograms(Programs):
             (ref_a2,),
         )
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: its turn
         axis_a2_front_down = nearest_period(offset_a2 + degrees(sin_q2_front_down, cos_q2_front_down), near_a2)
-        cos_q3_front_down = a3_by_effective_q3*cos_swing_q3_front + d4_by_effective_q3*sin_swing_q3_front_up
-        sin_q3_front_down = d4_by_effective_q3*cos_swing_q3_front - a3_by_effective_q3*sin_swing_q3_front_up
+        cos_q3_front_down = a3_by_effective_q3 * cos_swing_q3_front + d4_by_effective_q3 * sin_swing_q3_front_up
+        sin_q3_front_down = d4_by_effective_q3 * cos_swing_q3_front - a3_by_effective_q3 * sin_swing_q3_front_up
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         # A3: its turn
         axis_a3_front_down = nearest_period(offset_a3 + degrees(sin_q3_front_down, cos_q3_front_down), near_a3)
-        r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
-        sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
-        cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
-        r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down
-        r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front
+        r13_from_q1_front = r13 * cos_q1_front + r23 * sin_q1_front
+        sin_q23_front_down = cos_q2_front_down * sin_q3_front_down + cos_q3_front_down * sin_q2_front_down
+        cos_q23_front_down = cos_q2_front_down * cos_q3_front_down - sin_q2_front_down * sin_q3_front_down
+        r13_from_q123_front_down = r33 * cos_q23_front_down - r13_from_q1_front * sin_q23_front_down
+        r23_from_q1_front = r23 * cos_q1_front - r13 * sin_q1_front
         # q4: direction and distance of a point
         radius_q4_front_down = sqrt(
-            r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
+            r13_from_q123_front_down * r13_from_q123_front_down + r23_from_q1_front * r23_from_q1_front
         )
 
         def elsewhere_direction_x_q4_front_down_down(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            free_a4 = (ref_a4 - offset_a4) * DEGREE
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_front_down_down = cos(free_a4)
             direction_y_q4_front_down_down = sin(free_a4)
@@ -822,7 +813,9 @@ class ArrayPrograms(Programs):
             direction_x_q4_front_down_up = direction_x_q4_front_down_down
             direction_y_q4_front_down_up = direction_y_q4_front_down_down
             return (
-                direction_x_q4_front_down_down, direction_y_q4_front_down_down, direction_x_q4_front_down_up,
+                direction_x_q4_front_down_down,
+                direction_y_q4_front_down_down,
+                direction_x_q4_front_down_up,
                 direction_y_q4_front_down_up,
             )
 
@@ -832,88 +825,86 @@ class ArrayPrograms(Programs):
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         direction_x_q4_front_down_up = -direction_x_q4_front_down_down
         direction_y_q4_front_down_up = -r23_from_q1_front
-        found = elsewhere(
+        (
+            direction_x_q4_front_down_down,
+            direction_y_q4_front_down_down,
+            direction_x_q4_front_down_up,
+            direction_y_q4_front_down_up,
+        ) = elsewhere(
             radius_q4_front_down > 1e-11,
             (
-                direction_x_q4_front_down_down, direction_y_q4_front_down_down, direction_x_q4_front_down_up,
+                direction_x_q4_front_down_down,
+                direction_y_q4_front_down_down,
+                direction_x_q4_front_down_up,
                 direction_y_q4_front_down_up,
             ),
             elsewhere_direction_x_q4_front_down_down,
             (ref_a4,),
         )
-        (
-            direction_x_q4_front_down_down, direction_y_q4_front_down_down, direction_x_q4_front_down_up,
-            direction_y_q4_front_down_up,
-        ) = found
         open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # A4: its turn
         axis_a4_front_down_down = nearest_period(
-            offset_a4 + degrees(direction_y_q4_front_down_down, direction_x_q4_front_down_down),
-            near_a4,
+            offset_a4 + degrees(direction_y_q4_front_down_down, direction_x_q4_front_down_down), near_a4
         )
         # q5: linear pair in the q4 radius and r23 equations
-        cos_q5_front_down = r13_from_q1_front*cos_q23_front_down + r33*sin_q23_front_down
+        cos_q5_front_down = r13_from_q1_front * cos_q23_front_down + r33 * sin_q23_front_down
         open_a5 = select(single_a5, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
+        near_a5 = select(turn_a5 != 0, 360.0 * select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         # A5: its turn
-        axis_a5_front_down_down = nearest_period(
-            offset_a5 + degrees(radius_q4_front_down, cos_q5_front_down),
-            near_a5,
-        )
-        r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
-        r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
-        r11_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down
+        axis_a5_front_down_down = nearest_period(offset_a5 + degrees(radius_q4_front_down, cos_q5_front_down), near_a5)
+        r21_from_q1_front = r21 * cos_q1_front - r11 * sin_q1_front
+        r11_from_q1_front = r11 * cos_q1_front + r21 * sin_q1_front
+        r11_from_q123_front_down = r31 * cos_q23_front_down - r11_from_q1_front * sin_q23_front_down
         scaled_r21_from_q1234_front_down_down = (
-            -direction_x_q4_front_down_down*r21_from_q1_front
-            - direction_y_q4_front_down_down*r11_from_q123_front_down
+            -direction_x_q4_front_down_down * r21_from_q1_front
+            - direction_y_q4_front_down_down * r11_from_q123_front_down
         )
-        r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front
-        r12_from_q1_front = r12*cos_q1_front + r22*sin_q1_front
-        r12_from_q123_front_down = r32*cos_q23_front_down - r12_from_q1_front*sin_q23_front_down
+        r22_from_q1_front = r22 * cos_q1_front - r12 * sin_q1_front
+        r12_from_q1_front = r12 * cos_q1_front + r22 * sin_q1_front
+        r12_from_q123_front_down = r32 * cos_q23_front_down - r12_from_q1_front * sin_q23_front_down
         scaled_r22_from_q1234_front_down_down = (
-            -direction_x_q4_front_down_down*r22_from_q1_front
-            - direction_y_q4_front_down_down*r12_from_q123_front_down
+            -direction_x_q4_front_down_down * r22_from_q1_front
+            - direction_y_q4_front_down_down * r12_from_q123_front_down
         )
         open_a6 = select(single_a6, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
+        near_a6 = select(turn_a6 != 0, 360.0 * select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         # A6: its turn
         axis_a6_front_down_down = nearest_period(
-            offset_a6 + degrees(scaled_r21_from_q1234_front_down_down, scaled_r22_from_q1234_front_down_down),
-            near_a6,
+            offset_a6 + degrees(scaled_r21_from_q1234_front_down_down, scaled_r22_from_q1234_front_down_down), near_a6
         )
         # A4: its turn
         axis_a4_front_down_up = nearest_period(
-            offset_a4 + degrees(direction_y_q4_front_down_up, direction_x_q4_front_down_up),
-            near_a4,
+            offset_a4 + degrees(direction_y_q4_front_down_up, direction_x_q4_front_down_up), near_a4
         )
         # A5: its turn
         axis_a5_front_down_up = nearest_period(offset_a5 + degrees(-radius_q4_front_down, cos_q5_front_down), near_a5)
         scaled_r21_from_q1234_front_down_up = (
-            -direction_x_q4_front_down_up*r21_from_q1_front - direction_y_q4_front_down_up*r11_from_q123_front_down
+            -direction_x_q4_front_down_up * r21_from_q1_front - direction_y_q4_front_down_up * r11_from_q123_front_down
         )
         scaled_r22_from_q1234_front_down_up = (
-            -direction_x_q4_front_down_up*r22_from_q1_front - direction_y_q4_front_down_up*r12_from_q123_front_down
+            -direction_x_q4_front_down_up * r22_from_q1_front - direction_y_q4_front_down_up * r12_from_q123_front_down
         )
         # A6: its turn
         axis_a6_front_down_up = nearest_period(
-            offset_a6 + degrees(scaled_r21_from_q1234_front_down_up, scaled_r22_from_q1234_front_down_up),
-            near_a6,
+            offset_a6 + degrees(scaled_r21_from_q1234_front_down_up, scaled_r22_from_q1234_front_down_up), near_a6
         )
         # A2: its turn
         axis_a2_front_up = nearest_period(offset_a2 + degrees(sin_q2_front_up, cos_q2_front_up), near_a2)
-        cos_q3_front_up = a3_by_effective_q3*cos_swing_q3_front - d4_by_effective_q3*sin_swing_q3_front_up
-        sin_q3_front_up = a3_by_effective_q3*sin_swing_q3_front_up + d4_by_effective_q3*cos_swing_q3_front
+        cos_q3_front_up = a3_by_effective_q3 * cos_swing_q3_front - d4_by_effective_q3 * sin_swing_q3_front_up
+        sin_q3_front_up = a3_by_effective_q3 * sin_swing_q3_front_up + d4_by_effective_q3 * cos_swing_q3_front
         # A3: its turn
         axis_a3_front_up = nearest_period(offset_a3 + degrees(sin_q3_front_up, cos_q3_front_up), near_a3)
-        sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up
-        cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up
-        r13_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up
+        sin_q23_front_up = cos_q2_front_up * sin_q3_front_up + cos_q3_front_up * sin_q2_front_up
+        cos_q23_front_up = cos_q2_front_up * cos_q3_front_up - sin_q2_front_up * sin_q3_front_up
+        r13_from_q123_front_up = r33 * cos_q23_front_up - r13_from_q1_front * sin_q23_front_up
         # q4: direction and distance of a point
-        radius_q4_front_up = sqrt(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
+        radius_q4_front_up = sqrt(
+            r13_from_q123_front_up * r13_from_q123_front_up + r23_from_q1_front * r23_from_q1_front
+        )
 
         def elsewhere_direction_x_q4_front_up_down(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            free_a4 = (ref_a4 - offset_a4) * DEGREE
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_front_up_down = cos(free_a4)
             direction_y_q4_front_up_down = sin(free_a4)
@@ -921,7 +912,9 @@ class ArrayPrograms(Programs):
             direction_x_q4_front_up_up = direction_x_q4_front_up_down
             direction_y_q4_front_up_up = direction_y_q4_front_up_down
             return (
-                direction_x_q4_front_up_down, direction_y_q4_front_up_down, direction_x_q4_front_up_up,
+                direction_x_q4_front_up_down,
+                direction_y_q4_front_up_down,
+                direction_x_q4_front_up_up,
                 direction_y_q4_front_up_up,
             )
 
@@ -931,101 +924,102 @@ class ArrayPrograms(Programs):
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         direction_x_q4_front_up_up = -direction_x_q4_front_up_down
         direction_y_q4_front_up_up = -r23_from_q1_front
-        found = elsewhere(
+        (
+            direction_x_q4_front_up_down,
+            direction_y_q4_front_up_down,
+            direction_x_q4_front_up_up,
+            direction_y_q4_front_up_up,
+        ) = elsewhere(
             radius_q4_front_up > 1e-11,
             (
-                direction_x_q4_front_up_down, direction_y_q4_front_up_down, direction_x_q4_front_up_up,
+                direction_x_q4_front_up_down,
+                direction_y_q4_front_up_down,
+                direction_x_q4_front_up_up,
                 direction_y_q4_front_up_up,
             ),
             elsewhere_direction_x_q4_front_up_down,
             (ref_a4,),
         )
-        (
-            direction_x_q4_front_up_down, direction_y_q4_front_up_down, direction_x_q4_front_up_up,
-            direction_y_q4_front_up_up,
-        ) = found
         # A4: its turn
         axis_a4_front_up_down = nearest_period(
-            offset_a4 + degrees(direction_y_q4_front_up_down, direction_x_q4_front_up_down),
-            near_a4,
+            offset_a4 + degrees(direction_y_q4_front_up_down, direction_x_q4_front_up_down), near_a4
         )
         # q5: linear pair in the q4 radius and r23 equations
-        cos_q5_front_up = r13_from_q1_front*cos_q23_front_up + r33*sin_q23_front_up
+        cos_q5_front_up = r13_from_q1_front * cos_q23_front_up + r33 * sin_q23_front_up
         # A5: its turn
         axis_a5_front_up_down = nearest_period(offset_a5 + degrees(radius_q4_front_up, cos_q5_front_up), near_a5)
-        r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
+        r11_from_q123_front_up = r31 * cos_q23_front_up - r11_from_q1_front * sin_q23_front_up
         scaled_r21_from_q1234_front_up_down = (
-            -direction_x_q4_front_up_down*r21_from_q1_front - direction_y_q4_front_up_down*r11_from_q123_front_up
+            -direction_x_q4_front_up_down * r21_from_q1_front - direction_y_q4_front_up_down * r11_from_q123_front_up
         )
-        r12_from_q123_front_up = r32*cos_q23_front_up - r12_from_q1_front*sin_q23_front_up
+        r12_from_q123_front_up = r32 * cos_q23_front_up - r12_from_q1_front * sin_q23_front_up
         scaled_r22_from_q1234_front_up_down = (
-            -direction_x_q4_front_up_down*r22_from_q1_front - direction_y_q4_front_up_down*r12_from_q123_front_up
+            -direction_x_q4_front_up_down * r22_from_q1_front - direction_y_q4_front_up_down * r12_from_q123_front_up
         )
         # A6: its turn
         axis_a6_front_up_down = nearest_period(
-            offset_a6 + degrees(scaled_r21_from_q1234_front_up_down, scaled_r22_from_q1234_front_up_down),
-            near_a6,
+            offset_a6 + degrees(scaled_r21_from_q1234_front_up_down, scaled_r22_from_q1234_front_up_down), near_a6
         )
         # A4: its turn
         axis_a4_front_up_up = nearest_period(
-            offset_a4 + degrees(direction_y_q4_front_up_up, direction_x_q4_front_up_up),
-            near_a4,
+            offset_a4 + degrees(direction_y_q4_front_up_up, direction_x_q4_front_up_up), near_a4
         )
         # A5: its turn
         axis_a5_front_up_up = nearest_period(offset_a5 + degrees(-radius_q4_front_up, cos_q5_front_up), near_a5)
         scaled_r21_from_q1234_front_up_up = (
-            -direction_x_q4_front_up_up*r21_from_q1_front - direction_y_q4_front_up_up*r11_from_q123_front_up
+            -direction_x_q4_front_up_up * r21_from_q1_front - direction_y_q4_front_up_up * r11_from_q123_front_up
         )
         scaled_r22_from_q1234_front_up_up = (
-            -direction_x_q4_front_up_up*r22_from_q1_front - direction_y_q4_front_up_up*r12_from_q123_front_up
+            -direction_x_q4_front_up_up * r22_from_q1_front - direction_y_q4_front_up_up * r12_from_q123_front_up
         )
         # A6: its turn
         axis_a6_front_up_up = nearest_period(
-            offset_a6 + degrees(scaled_r21_from_q1234_front_up_up, scaled_r22_from_q1234_front_up_up),
-            near_a6,
+            offset_a6 + degrees(scaled_r21_from_q1234_front_up_up, scaled_r22_from_q1234_front_up_up), near_a6
         )
         wrist_x_from_q1_back = ahead_q1_back - a1  # what the unknown links must span
-        reach_back = root(wrist_y_from_q1_squared + wrist_x_from_q1_back*wrist_x_from_q1_back)
+        reach_back = root(wrist_y_from_q1_squared + wrist_x_from_q1_back * wrist_x_from_q1_back)
         # 1 - cosine, times the scale
-        one_less_cos_q3_back = (a2_plus_effective_q3 + reach_back)*(a2_plus_effective_q3 - reach_back)
+        one_less_cos_q3_back = (a2_plus_effective_q3 + reach_back) * (a2_plus_effective_q3 - reach_back)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_back)
-        sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back  # the square of sine times scale
-        refusal_back = select(sine_square_q3_back >= -swing_scale_q3_squared_times_rounding, 0, 3)  # q3: out of reach
+        one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach_back)
+        sine_square_q3_back = one_less_cos_q3_back * one_plus_cos_q3_back  # the square of sine times scale
+        # q3: out of reach
+        refusal_back = select(sine_square_q3_back >= -swing_scale_q3_squared_times_rounding, 0, 3)
         axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
-        both_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back  # twice the scale, with the rounding of its parts
+        # twice the scale, with the rounding of its parts
+        both_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back
         sum_q3_back = select(both_q3_back > 0.0, both_q3_back, 1.0)
-        sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/sum_q3_back
-        cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/sum_q3_back
+        sin_swing_q3_back_up = 2.0 * root(sine_square_q3_back) / sum_q3_back
+        cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back) / sum_q3_back
 
         def elsewhere_cos_q2_back_down(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             cos_q2_back_down = cos(free_a2)  # its reference where it is free
             sin_q2_back_down = sin(free_a2)
             cos_q2_back_up = cos_q2_back_down  # its reference where it is free
             sin_q2_back_up = sin_q2_back_down
             return (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up)
 
-        arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up
-        arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back
+        arm_along_q2_back_down = effective_q3 * sin_swing_q3_back_up
+        arm_across_q2_back = a2 + effective_q3 * cos_swing_q3_back
         # q2: linear pair in the x_from_q1 and y_from_q1 equations
-        along_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-        across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
+        along_q2_back_down = arm_across_q2_back * wrist_y_from_q1 + arm_along_q2_back_down * wrist_x_from_q1_back
+        across_q2_back_down = arm_along_q2_back_down * wrist_y_from_q1 - arm_across_q2_back * wrist_x_from_q1_back
         across_q2_squared_plus_along_q2_squared_back_down = (
-            across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
+            across_q2_back_down * across_q2_back_down + along_q2_back_down * along_q2_back_down
         )
         length_q2_back_down = select(
             across_q2_squared_plus_along_q2_squared_back_down > 0.0,
             root(across_q2_squared_plus_along_q2_squared_back_down),
             1.0,
         )
-        cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
-        sin_q2_back_down = across_q2_back_down/length_q2_back_down
+        cos_q2_back_down = along_q2_back_down / length_q2_back_down  # its reference where it is free
+        sin_q2_back_down = across_q2_back_down / length_q2_back_down
         # q2: linear pair in the x_from_q1 and y_from_q1 equations
-        along_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
-        cos_q2_back_up = along_q2_back_up/length_q2_back_down  # its reference where it is free
-        across_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
-        sin_q2_back_up = across_q2_back_up/length_q2_back_down
+        along_q2_back_up = arm_across_q2_back * wrist_y_from_q1 - arm_along_q2_back_down * wrist_x_from_q1_back
+        cos_q2_back_up = along_q2_back_up / length_q2_back_down  # its reference where it is free
+        across_q2_back_up = -arm_across_q2_back * wrist_x_from_q1_back - arm_along_q2_back_down * wrist_y_from_q1
+        sin_q2_back_up = across_q2_back_up / length_q2_back_down
         cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up = elsewhere(
             reach_back > machine_scale_times_free_angle,
             (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up),
@@ -1034,22 +1028,22 @@ class ArrayPrograms(Programs):
         )
         # A2: its turn
         axis_a2_back_down = nearest_period(offset_a2 + degrees(sin_q2_back_down, cos_q2_back_down), near_a2)
-        cos_q3_back_down = a3_by_effective_q3*cos_swing_q3_back + d4_by_effective_q3*sin_swing_q3_back_up
-        sin_q3_back_down = d4_by_effective_q3*cos_swing_q3_back - a3_by_effective_q3*sin_swing_q3_back_up
+        cos_q3_back_down = a3_by_effective_q3 * cos_swing_q3_back + d4_by_effective_q3 * sin_swing_q3_back_up
+        sin_q3_back_down = d4_by_effective_q3 * cos_swing_q3_back - a3_by_effective_q3 * sin_swing_q3_back_up
         # A3: its turn
         axis_a3_back_down = nearest_period(offset_a3 + degrees(sin_q3_back_down, cos_q3_back_down), near_a3)
-        r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
-        sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down
-        cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down
-        r13_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down
-        r23_from_q1_back = r23*cos_q1_back - r13*sin_q1_back
+        r13_from_q1_back = r13 * cos_q1_back + r23 * sin_q1_back
+        sin_q23_back_down = cos_q2_back_down * sin_q3_back_down + cos_q3_back_down * sin_q2_back_down
+        cos_q23_back_down = cos_q2_back_down * cos_q3_back_down - sin_q2_back_down * sin_q3_back_down
+        r13_from_q123_back_down = r33 * cos_q23_back_down - r13_from_q1_back * sin_q23_back_down
+        r23_from_q1_back = r23 * cos_q1_back - r13 * sin_q1_back
         # q4: direction and distance of a point
         radius_q4_back_down = sqrt(
-            r13_from_q123_back_down*r13_from_q123_back_down + r23_from_q1_back*r23_from_q1_back
+            r13_from_q123_back_down * r13_from_q123_back_down + r23_from_q1_back * r23_from_q1_back
         )
 
         def elsewhere_direction_x_q4_back_down_down(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            free_a4 = (ref_a4 - offset_a4) * DEGREE
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_back_down_down = cos(free_a4)
             direction_y_q4_back_down_down = sin(free_a4)
@@ -1057,7 +1051,9 @@ class ArrayPrograms(Programs):
             direction_x_q4_back_down_up = direction_x_q4_back_down_down
             direction_y_q4_back_down_up = direction_y_q4_back_down_down
             return (
-                direction_x_q4_back_down_down, direction_y_q4_back_down_down, direction_x_q4_back_down_up,
+                direction_x_q4_back_down_down,
+                direction_y_q4_back_down_down,
+                direction_x_q4_back_down_up,
                 direction_y_q4_back_down_up,
             )
 
@@ -1067,75 +1063,76 @@ class ArrayPrograms(Programs):
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         direction_x_q4_back_down_up = -direction_x_q4_back_down_down
         direction_y_q4_back_down_up = -r23_from_q1_back
-        found = elsewhere(
+        (
+            direction_x_q4_back_down_down,
+            direction_y_q4_back_down_down,
+            direction_x_q4_back_down_up,
+            direction_y_q4_back_down_up,
+        ) = elsewhere(
             radius_q4_back_down > 1e-11,
             (
-                direction_x_q4_back_down_down, direction_y_q4_back_down_down, direction_x_q4_back_down_up,
+                direction_x_q4_back_down_down,
+                direction_y_q4_back_down_down,
+                direction_x_q4_back_down_up,
                 direction_y_q4_back_down_up,
             ),
             elsewhere_direction_x_q4_back_down_down,
             (ref_a4,),
         )
-        (
-            direction_x_q4_back_down_down, direction_y_q4_back_down_down, direction_x_q4_back_down_up,
-            direction_y_q4_back_down_up,
-        ) = found
         # A4: its turn
         axis_a4_back_down_down = nearest_period(
-            offset_a4 + degrees(direction_y_q4_back_down_down, direction_x_q4_back_down_down),
-            near_a4,
+            offset_a4 + degrees(direction_y_q4_back_down_down, direction_x_q4_back_down_down), near_a4
         )
         # q5: linear pair in the q4 radius and r23 equations
-        cos_q5_back_down = r13_from_q1_back*cos_q23_back_down + r33*sin_q23_back_down
+        cos_q5_back_down = r13_from_q1_back * cos_q23_back_down + r33 * sin_q23_back_down
         # A5: its turn
         axis_a5_back_down_down = nearest_period(offset_a5 + degrees(radius_q4_back_down, cos_q5_back_down), near_a5)
-        r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
-        r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
-        r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down
+        r21_from_q1_back = r21 * cos_q1_back - r11 * sin_q1_back
+        r11_from_q1_back = r11 * cos_q1_back + r21 * sin_q1_back
+        r11_from_q123_back_down = r31 * cos_q23_back_down - r11_from_q1_back * sin_q23_back_down
         scaled_r21_from_q1234_back_down_down = (
-            -direction_x_q4_back_down_down*r21_from_q1_back - direction_y_q4_back_down_down*r11_from_q123_back_down
+            -direction_x_q4_back_down_down * r21_from_q1_back - direction_y_q4_back_down_down * r11_from_q123_back_down
         )
-        r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back
-        r12_from_q1_back = r12*cos_q1_back + r22*sin_q1_back
-        r12_from_q123_back_down = r32*cos_q23_back_down - r12_from_q1_back*sin_q23_back_down
+        r22_from_q1_back = r22 * cos_q1_back - r12 * sin_q1_back
+        r12_from_q1_back = r12 * cos_q1_back + r22 * sin_q1_back
+        r12_from_q123_back_down = r32 * cos_q23_back_down - r12_from_q1_back * sin_q23_back_down
         scaled_r22_from_q1234_back_down_down = (
-            -direction_x_q4_back_down_down*r22_from_q1_back - direction_y_q4_back_down_down*r12_from_q123_back_down
+            -direction_x_q4_back_down_down * r22_from_q1_back - direction_y_q4_back_down_down * r12_from_q123_back_down
         )
         # A6: its turn
         axis_a6_back_down_down = nearest_period(
-            offset_a6 + degrees(scaled_r21_from_q1234_back_down_down, scaled_r22_from_q1234_back_down_down),
-            near_a6,
+            offset_a6 + degrees(scaled_r21_from_q1234_back_down_down, scaled_r22_from_q1234_back_down_down), near_a6
         )
         # A4: its turn
         axis_a4_back_down_up = nearest_period(
-            offset_a4 + degrees(direction_y_q4_back_down_up, direction_x_q4_back_down_up),
-            near_a4,
+            offset_a4 + degrees(direction_y_q4_back_down_up, direction_x_q4_back_down_up), near_a4
         )
         # A5: its turn
         axis_a5_back_down_up = nearest_period(offset_a5 + degrees(-radius_q4_back_down, cos_q5_back_down), near_a5)
         scaled_r21_from_q1234_back_down_up = (
-            -direction_x_q4_back_down_up*r21_from_q1_back - direction_y_q4_back_down_up*r11_from_q123_back_down
+            -direction_x_q4_back_down_up * r21_from_q1_back - direction_y_q4_back_down_up * r11_from_q123_back_down
         )
         scaled_r22_from_q1234_back_down_up = (
-            -direction_x_q4_back_down_up*r22_from_q1_back - direction_y_q4_back_down_up*r12_from_q123_back_down
+            -direction_x_q4_back_down_up * r22_from_q1_back - direction_y_q4_back_down_up * r12_from_q123_back_down
         )
         # A6: its turn
         axis_a6_back_down_up = nearest_period(
-            offset_a6 + degrees(scaled_r21_from_q1234_back_down_up, scaled_r22_from_q1234_back_down_up),
-            near_a6,
+            offset_a6 + degrees(scaled_r21_from_q1234_back_down_up, scaled_r22_from_q1234_back_down_up), near_a6
         )
-        axis_a2_back_up = nearest_period(offset_a2 + degrees(sin_q2_back_up, cos_q2_back_up), near_a2)  # A2: its turn
-        cos_q3_back_up = a3_by_effective_q3*cos_swing_q3_back - d4_by_effective_q3*sin_swing_q3_back_up
-        sin_q3_back_up = a3_by_effective_q3*sin_swing_q3_back_up + d4_by_effective_q3*cos_swing_q3_back
-        axis_a3_back_up = nearest_period(offset_a3 + degrees(sin_q3_back_up, cos_q3_back_up), near_a3)  # A3: its turn
-        sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up
-        cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up
-        r13_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up
+        # A2: its turn
+        axis_a2_back_up = nearest_period(offset_a2 + degrees(sin_q2_back_up, cos_q2_back_up), near_a2)
+        cos_q3_back_up = a3_by_effective_q3 * cos_swing_q3_back - d4_by_effective_q3 * sin_swing_q3_back_up
+        sin_q3_back_up = a3_by_effective_q3 * sin_swing_q3_back_up + d4_by_effective_q3 * cos_swing_q3_back
+        # A3: its turn
+        axis_a3_back_up = nearest_period(offset_a3 + degrees(sin_q3_back_up, cos_q3_back_up), near_a3)
+        sin_q23_back_up = cos_q2_back_up * sin_q3_back_up + cos_q3_back_up * sin_q2_back_up
+        cos_q23_back_up = cos_q2_back_up * cos_q3_back_up - sin_q2_back_up * sin_q3_back_up
+        r13_from_q123_back_up = r33 * cos_q23_back_up - r13_from_q1_back * sin_q23_back_up
         # q4: direction and distance of a point
-        radius_q4_back_up = sqrt(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
+        radius_q4_back_up = sqrt(r13_from_q123_back_up * r13_from_q123_back_up + r23_from_q1_back * r23_from_q1_back)
 
         def elsewhere_direction_x_q4_back_up_down(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            free_a4 = (ref_a4 - offset_a4) * DEGREE
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_back_up_down = cos(free_a4)
             direction_y_q4_back_up_down = sin(free_a4)
@@ -1143,7 +1140,9 @@ class ArrayPrograms(Programs):
             direction_x_q4_back_up_up = direction_x_q4_back_up_down
             direction_y_q4_back_up_up = direction_y_q4_back_up_down
             return (
-                direction_x_q4_back_up_down, direction_y_q4_back_up_down, direction_x_q4_back_up_up,
+                direction_x_q4_back_up_down,
+                direction_y_q4_back_up_down,
+                direction_x_q4_back_up_up,
                 direction_y_q4_back_up_up,
             )
 
@@ -1153,114 +1152,145 @@ class ArrayPrograms(Programs):
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         direction_x_q4_back_up_up = -direction_x_q4_back_up_down
         direction_y_q4_back_up_up = -r23_from_q1_back
-        found = elsewhere(
+        (
+            direction_x_q4_back_up_down,
+            direction_y_q4_back_up_down,
+            direction_x_q4_back_up_up,
+            direction_y_q4_back_up_up,
+        ) = elsewhere(
             radius_q4_back_up > 1e-11,
             (
-                direction_x_q4_back_up_down, direction_y_q4_back_up_down, direction_x_q4_back_up_up,
+                direction_x_q4_back_up_down,
+                direction_y_q4_back_up_down,
+                direction_x_q4_back_up_up,
                 direction_y_q4_back_up_up,
             ),
             elsewhere_direction_x_q4_back_up_down,
             (ref_a4,),
         )
-        (
-            direction_x_q4_back_up_down, direction_y_q4_back_up_down, direction_x_q4_back_up_up,
-            direction_y_q4_back_up_up,
-        ) = found
         # A4: its turn
         axis_a4_back_up_down = nearest_period(
-            offset_a4 + degrees(direction_y_q4_back_up_down, direction_x_q4_back_up_down),
-            near_a4,
+            offset_a4 + degrees(direction_y_q4_back_up_down, direction_x_q4_back_up_down), near_a4
         )
         # q5: linear pair in the q4 radius and r23 equations
-        cos_q5_back_up = r13_from_q1_back*cos_q23_back_up + r33*sin_q23_back_up
+        cos_q5_back_up = r13_from_q1_back * cos_q23_back_up + r33 * sin_q23_back_up
         # A5: its turn
         axis_a5_back_up_down = nearest_period(offset_a5 + degrees(radius_q4_back_up, cos_q5_back_up), near_a5)
-        r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
+        r11_from_q123_back_up = r31 * cos_q23_back_up - r11_from_q1_back * sin_q23_back_up
         scaled_r21_from_q1234_back_up_down = (
-            -direction_x_q4_back_up_down*r21_from_q1_back - direction_y_q4_back_up_down*r11_from_q123_back_up
+            -direction_x_q4_back_up_down * r21_from_q1_back - direction_y_q4_back_up_down * r11_from_q123_back_up
         )
-        r12_from_q123_back_up = r32*cos_q23_back_up - r12_from_q1_back*sin_q23_back_up
+        r12_from_q123_back_up = r32 * cos_q23_back_up - r12_from_q1_back * sin_q23_back_up
         scaled_r22_from_q1234_back_up_down = (
-            -direction_x_q4_back_up_down*r22_from_q1_back - direction_y_q4_back_up_down*r12_from_q123_back_up
+            -direction_x_q4_back_up_down * r22_from_q1_back - direction_y_q4_back_up_down * r12_from_q123_back_up
         )
         # A6: its turn
         axis_a6_back_up_down = nearest_period(
-            offset_a6 + degrees(scaled_r21_from_q1234_back_up_down, scaled_r22_from_q1234_back_up_down),
-            near_a6,
+            offset_a6 + degrees(scaled_r21_from_q1234_back_up_down, scaled_r22_from_q1234_back_up_down), near_a6
         )
         # A4: its turn
         axis_a4_back_up_up = nearest_period(
-            offset_a4 + degrees(direction_y_q4_back_up_up, direction_x_q4_back_up_up),
-            near_a4,
+            offset_a4 + degrees(direction_y_q4_back_up_up, direction_x_q4_back_up_up), near_a4
         )
         # A5: its turn
         axis_a5_back_up_up = nearest_period(offset_a5 + degrees(-radius_q4_back_up, cos_q5_back_up), near_a5)
         scaled_r21_from_q1234_back_up_up = (
-            -direction_x_q4_back_up_up*r21_from_q1_back - direction_y_q4_back_up_up*r11_from_q123_back_up
+            -direction_x_q4_back_up_up * r21_from_q1_back - direction_y_q4_back_up_up * r11_from_q123_back_up
         )
         scaled_r22_from_q1234_back_up_up = (
-            -direction_x_q4_back_up_up*r22_from_q1_back - direction_y_q4_back_up_up*r12_from_q123_back_up
+            -direction_x_q4_back_up_up * r22_from_q1_back - direction_y_q4_back_up_up * r12_from_q123_back_up
         )
         # A6: its turn
         axis_a6_back_up_up = nearest_period(
-            offset_a6 + degrees(scaled_r21_from_q1234_back_up_up, scaled_r22_from_q1234_back_up_up),
-            near_a6,
+            offset_a6 + degrees(scaled_r21_from_q1234_back_up_up, scaled_r22_from_q1234_back_up_up), near_a6
         )
         status_front = refused(status, refusal_front)
         status_back = refused(status, refusal_back)
         return (
             (
                 (
-                    axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_down,
-                    axis_a5_front_down_down, axis_a6_front_down_down,
+                    axis_a1_front,
+                    axis_a2_front_down,
+                    axis_a3_front_down,
+                    axis_a4_front_down_down,
+                    axis_a5_front_down_down,
+                    axis_a6_front_down_down,
                 ),
                 status_front,
             ),
             (
                 (
-                    axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_down,
-                    axis_a5_back_down_down, axis_a6_back_down_down,
+                    axis_a1_back,
+                    axis_a2_back_down,
+                    axis_a3_back_down,
+                    axis_a4_back_down_down,
+                    axis_a5_back_down_down,
+                    axis_a6_back_down_down,
                 ),
                 status_back,
             ),
             (
                 (
-                    axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_down, axis_a5_front_up_down,
+                    axis_a1_front,
+                    axis_a2_front_up,
+                    axis_a3_front_up,
+                    axis_a4_front_up_down,
+                    axis_a5_front_up_down,
                     axis_a6_front_up_down,
                 ),
                 status_front,
             ),
             (
                 (
-                    axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_down, axis_a5_back_up_down,
+                    axis_a1_back,
+                    axis_a2_back_up,
+                    axis_a3_back_up,
+                    axis_a4_back_up_down,
+                    axis_a5_back_up_down,
                     axis_a6_back_up_down,
                 ),
                 status_back,
             ),
             (
                 (
-                    axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_up,
-                    axis_a5_front_down_up, axis_a6_front_down_up,
+                    axis_a1_front,
+                    axis_a2_front_down,
+                    axis_a3_front_down,
+                    axis_a4_front_down_up,
+                    axis_a5_front_down_up,
+                    axis_a6_front_down_up,
                 ),
                 status_front,
             ),
             (
                 (
-                    axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_up, axis_a5_back_down_up,
+                    axis_a1_back,
+                    axis_a2_back_down,
+                    axis_a3_back_down,
+                    axis_a4_back_down_up,
+                    axis_a5_back_down_up,
                     axis_a6_back_down_up,
                 ),
                 status_back,
             ),
             (
                 (
-                    axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_up, axis_a5_front_up_up,
+                    axis_a1_front,
+                    axis_a2_front_up,
+                    axis_a3_front_up,
+                    axis_a4_front_up_up,
+                    axis_a5_front_up_up,
                     axis_a6_front_up_up,
                 ),
                 status_front,
             ),
             (
                 (
-                    axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_up, axis_a5_back_up_up,
+                    axis_a1_back,
+                    axis_a2_back_up,
+                    axis_a3_back_up,
+                    axis_a4_back_up_up,
+                    axis_a5_back_up_up,
                     axis_a6_back_up_up,
                 ),
                 status_back,

@@ -41,41 +41,36 @@ class ArrayPrograms(OrientationPrograms):
         """Position, rotation and the signed margin of every branch."""
         (axis_c,) = axes
         k = self.constants
-        offset_c = k.offset_c
-        tool_x = k.tool_x
-        tool_y = k.tool_y
-        tool_z = k.tool_z
+        offset_c, tool_x, tool_y, tool_z = k.offset_c, k.tool_x, k.tool_y, k.tool_z
         status = passed(axes)
         # numbers of reasonable size
         require(status, absolute(axis_c) <= 1e9, Status.BAD_INPUT)
-        c = DEGREE*(axis_c - offset_c)
+        c = DEGREE * (axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)
-        x = tool_x*cos_c - tool_y*sin_c
-        y = tool_y*cos_c + tool_x*sin_c
+        x = tool_x * cos_c - tool_y * sin_c
+        y = tool_y * cos_c + tool_x * sin_c
         return ((x, y, tool_z), ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         (turn_c,) = turns
         (ref_c,) = reference
         k = self.constants
-        mid_c = k.mid_c
-        offset_c = k.offset_c
-        single_c = k.single_c
+        mid_c, offset_c, single_c = k.mid_c, k.offset_c, k.single_c
         status = passed(position)
         # numbers of reasonable size
         require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
-        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
+        near_c = select(turn_c != 0, 360.0 * select(turn_c > 0, turn_c - 1, turn_c), open_c)
         axis_c = nearest_period(offset_c + degrees(heading_across, heading_along), near_c)  # C: its turn
         return (axis_c,), status
 
@@ -83,8 +78,7 @@ class ArrayPrograms(OrientationPrograms):
         """The test of the limits."""
         (axis_c,) = axes
         k = self.constants
-        highest_c = k.highest_c
-        lowest_c = k.lowest_c
+        highest_c, lowest_c = k.highest_c, k.lowest_c
         status = passed(axes)
         # limits of C
         require(status, (axis_c >= lowest_c) & (axis_c <= highest_c), Status.UNREACHABLE)
@@ -100,12 +94,13 @@ class ArrayPrograms(OrientationPrograms):
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(base_axis_x) <= 1e9) & (absolute(base_axis_y) <= 1e9) & (absolute(base_axis_z) <= 1e9)
-                & (absolute(flange_axis_x) <= 1e9) & (absolute(flange_axis_y) <= 1e9)
-                & (absolute(flange_axis_z) <= 1e9)
-            ),
+            (absolute(base_axis_x) <= 1e9)
+            & (absolute(base_axis_y) <= 1e9)
+            & (absolute(base_axis_z) <= 1e9)
+            & (absolute(flange_axis_x) <= 1e9)
+            & (absolute(flange_axis_y) <= 1e9)
+            & (absolute(flange_axis_z) <= 1e9),
             Status.BAD_INPUT,
         )
-        flange_along = flange_axis_z*tool_z  # what the flange holds, along the axis that it turns about
-        return (base_axis_x*flange_along, base_axis_y*flange_along, base_axis_z*flange_along), status
+        flange_along = flange_axis_z * tool_z  # what the flange holds, along the axis that it turns about
+        return (base_axis_x * flange_along, base_axis_y * flange_along, base_axis_z * flange_along), status

@@ -45,9 +45,7 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_r, axis_theta, axis_phi = axes
         k = self.constants
-        offset_phi = k.offset_phi
-        offset_r = k.offset_r
-        offset_theta = k.offset_theta
+        offset_phi, offset_r, offset_theta = k.offset_phi, k.offset_r, k.offset_theta
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -65,48 +63,45 @@ class ArrayPrograms(Programs):
             (axis_phi_minus_offset_phi >= -1e-9) & (axis_phi_minus_offset_phi <= 180.000000181),
             Status.IMPOSSIBLE,
         )
-        theta = DEGREE*(axis_theta - offset_theta)
+        theta = DEGREE * (axis_theta - offset_theta)
         cos_theta = cos(theta)
-        phi = DEGREE*axis_phi_minus_offset_phi
+        phi = DEGREE * axis_phi_minus_offset_phi
         sin_phi = sin(phi)
-        r_times_sin_phi = r*sin_phi
-        x = r_times_sin_phi*cos_theta  # x: affine in the x equation
+        r_times_sin_phi = r * sin_phi
+        x = r_times_sin_phi * cos_theta  # x: affine in the x equation
         sin_theta = sin(theta)
-        y = r_times_sin_phi*sin_theta  # y: affine in the y equation
+        y = r_times_sin_phi * sin_theta  # y: affine in the y equation
         cos_phi = cos(phi)
-        z = r*cos_phi  # z: affine in the z equation
+        z = r * cos_phi  # z: affine in the z equation
         return ((x, y, z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (turn_theta,) = turns
         _, ref_theta, ref_phi = reference
         k = self.constants
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_theta = k.mid_theta
-        offset_phi = k.offset_phi
-        offset_r = k.offset_r
-        offset_theta = k.offset_theta
-        single_theta = k.single_theta
+        machine_scale_times_free_angle, mid_theta = k.machine_scale_times_free_angle, k.mid_theta
+        offset_phi, offset_r, offset_theta, single_theta = k.offset_phi, k.offset_r, k.offset_theta, k.single_theta
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_phi) <= 1e9) & (absolute(ref_theta) <= 1e9) & (absolute(x) <= 1e9)
-                & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_phi) <= 1e9)
+            & (absolute(ref_theta) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        radius_theta = sqrt(x * x + y * y)  # theta: direction and distance of a point
+        radius_phi = sqrt(radius_theta * radius_theta + z * z)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
 
         def elsewhere_direction_x_theta(ref_theta: Real) -> Reals:
-            free_theta = (ref_theta - offset_theta)*DEGREE
+            free_theta = (ref_theta - offset_theta) * DEGREE
             direction_x_theta = cos(free_theta)  # its reference where it is free
             direction_y_theta = sin(free_theta)
             return (direction_x_theta, direction_y_theta)
@@ -120,13 +115,13 @@ class ArrayPrograms(Programs):
             (ref_theta,),
         )
         open_theta = select(single_theta, mid_theta, ref_theta)  # Theta: where its turn is open
-        near_theta = select(turn_theta != 0, 360.0*select(turn_theta > 0, turn_theta - 1, turn_theta), open_theta)
+        near_theta = select(turn_theta != 0, 360.0 * select(turn_theta > 0, turn_theta - 1, turn_theta), open_theta)
         # Theta: its turn
         axis_theta = nearest_period(offset_theta + degrees(direction_y_theta, direction_x_theta), near_theta)
 
         def elsewhere_direction_x_phi(ref_phi: Real) -> Reals:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)
+            free_phi = (ref_phi - offset_phi) * DEGREE
+            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0 * DEGREE, 90.0 * DEGREE)
             direction_x_phi = cos(part_of_direction_y_phi)  # its reference where it is free
             direction_y_phi = sin(part_of_direction_y_phi)
             return (direction_x_phi, direction_y_phi)
@@ -139,19 +134,15 @@ class ArrayPrograms(Programs):
             elsewhere_direction_x_phi,
             (ref_phi,),
         )
-        axis_phi = offset_phi + atan2(direction_y_phi, direction_x_phi)/DEGREE
+        axis_phi = offset_phi + atan2(direction_y_phi, direction_x_phi) / DEGREE
         return (axis_r, axis_theta, axis_phi), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_r, axis_theta, axis_phi = axes
         k = self.constants
-        highest_phi = k.highest_phi
-        highest_r = k.highest_r
-        highest_theta = k.highest_theta
-        lowest_phi = k.lowest_phi
-        lowest_r = k.lowest_r
-        lowest_theta = k.lowest_theta
+        highest_phi, highest_r, highest_theta, lowest_phi = k.highest_phi, k.highest_r, k.highest_theta, k.lowest_phi
+        lowest_r, lowest_theta = k.lowest_r, k.lowest_theta
         status = passed(axes)
         # limits of Theta
         require(status, (axis_theta >= lowest_theta) & (axis_theta <= highest_theta), Status.UNREACHABLE)

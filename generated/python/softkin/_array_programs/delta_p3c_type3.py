@@ -43,39 +43,22 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        assembly_sign = k.assembly_sign
-        cos_azimuth_1 = k.cos_azimuth_1
-        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
-        cos_azimuth_2 = k.cos_azimuth_2
-        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
-        cos_azimuth_3 = k.cos_azimuth_3
-        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
-        inner_arm_1 = k.inner_arm_1
-        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
-        inner_arm_2 = k.inner_arm_2
-        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
-        inner_arm_3 = k.inner_arm_3
-        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        outer_arm_1 = k.outer_arm_1
+        assembly_sign, cos_azimuth_1 = k.assembly_sign, k.cos_azimuth_1
+        cos_azimuth_1_times_inner_arm_1, cos_azimuth_2 = k.cos_azimuth_1_times_inner_arm_1, k.cos_azimuth_2
+        cos_azimuth_2_times_inner_arm_2, cos_azimuth_3 = k.cos_azimuth_2_times_inner_arm_2, k.cos_azimuth_3
+        cos_azimuth_3_times_inner_arm_3, inner_arm_1 = k.cos_azimuth_3_times_inner_arm_3, k.inner_arm_1
+        inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
+        inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
+        inner_arm_3_times_sin_azimuth_3, offset_a1 = k.inner_arm_3_times_sin_azimuth_3, k.offset_a1
+        offset_a2, offset_a3, outer_arm_1 = k.offset_a2, k.offset_a3, k.outer_arm_1
         outer_arm_1_squared = k.outer_arm_1_squared
-        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
-        outer_arm_2 = k.outer_arm_2
-        outer_arm_3 = k.outer_arm_3
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_1_x = k.part_of_pivot_1_x
-        part_of_pivot_1_y = k.part_of_pivot_1_y
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_3_x = k.part_of_pivot_3_x
-        part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
-        sin_azimuth_1 = k.sin_azimuth_1
-        sin_azimuth_2 = k.sin_azimuth_2
-        sin_azimuth_3 = k.sin_azimuth_3
+        outer_arm_1_squared_times_rounding, outer_arm_2 = k.outer_arm_1_squared_times_rounding, k.outer_arm_2
+        outer_arm_3, part_of_normal_divisor = k.outer_arm_3, k.part_of_normal_divisor
+        part_of_pivot_1_x, part_of_pivot_1_y = k.part_of_pivot_1_x, k.part_of_pivot_1_y
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        part_of_pivot_3_x, part_of_pivot_3_y = k.part_of_pivot_3_x, k.part_of_pivot_3_y
+        part_of_share_2, part_of_share_3, sin_azimuth_1 = k.part_of_share_2, k.part_of_share_3, k.sin_azimuth_1
+        sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_2, k.sin_azimuth_3
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -83,82 +66,79 @@ class ArrayPrograms(Programs):
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
             Status.BAD_INPUT,
         )
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1  # rod 1
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2  # rod 2
         apart_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        pivot_1_z = -inner_arm_1 * sin_a1  # rod 1
         sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        pivot_2_z = -inner_arm_2 * sin_a2  # rod 2
         apart_2_z = pivot_2_z - pivot_1_z
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3  # rod 3
         apart_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        pivot_3_z = -inner_arm_3 * sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        normal_x = apart_2_y * apart_3_z - apart_2_z * apart_3_y
+        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        normal_y = apart_2_z * apart_3_x - apart_2_x * apart_3_z
+        normal_z = apart_2_x * apart_3_y - apart_2_y * apart_3_x
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
         # how far centre 2 draws the foot
-        share_2 = part_of_share_2 + 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + apart_2_z*apart_2_z)
+        share_2 = part_of_share_2 + 0.5 * (apart_2_x * apart_2_x + apart_2_y * apart_2_y + apart_2_z * apart_2_z)
         # how far centre 3 draws the foot
-        share_3 = part_of_share_3 + 0.5*(apart_3_x*apart_3_x + apart_3_y*apart_3_y + apart_3_z*apart_3_z)
+        share_3 = part_of_share_3 + 0.5 * (apart_3_x * apart_3_x + apart_3_y * apart_3_y + apart_3_z * apart_3_z)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
-        one_by_normal_square = 1.0/normal_divisor
-        foot_x = (
-            one_by_normal_square
-            *((apart_3_y*normal_z - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - apart_2_y*normal_z)*share_3)
+        one_by_normal_square = 1.0 / normal_divisor
+        foot_x = one_by_normal_square * (
+            (apart_3_y * normal_z - apart_3_z * normal_y) * share_2
+            + (apart_2_z * normal_y - apart_2_y * normal_z) * share_3
         )
-        foot_y = (
-            one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+        foot_y = one_by_normal_square * (
+            (apart_3_z * normal_x - apart_3_x * normal_z) * share_2
+            + (apart_2_x * normal_z - apart_2_z * normal_x) * share_3
         )
-        foot_z = (
-            one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+        foot_z = one_by_normal_square * (
+            (apart_3_x * normal_y - apart_3_y * normal_x) * share_2
+            + (apart_2_y * normal_x - apart_2_x * normal_y) * share_3
         )
         # the square of the height over the centres
-        height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = outer_arm_1_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         require(status, height_square >= -outer_arm_1_squared_times_rounding, Status.IMPOSSIBLE)
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + pivot_1_y + normal_y*rise
-        z = foot_z + pivot_1_z + normal_z*rise
+        rise = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + normal_x * rise
+        y = foot_y + pivot_1_y + normal_y * rise
+        z = foot_z + pivot_1_z + normal_z * rise
         span_1_x = x - part_of_pivot_1_x  # rod 1
         span_1_y = y - part_of_pivot_1_y  # rod 1
-        branch_knee_1 = ((-span_1_x*cos_azimuth_1 - span_1_y*sin_azimuth_1)*sin_a1 - z*cos_a1)/outer_arm_1
+        branch_knee_1 = ((-span_1_x * cos_azimuth_1 - span_1_y * sin_azimuth_1) * sin_a1 - z * cos_a1) / outer_arm_1
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y  # rod 2
-        branch_knee_2 = ((-span_2_x*cos_azimuth_2 - span_2_y*sin_azimuth_2)*sin_a2 - z*cos_a2)/outer_arm_2
+        branch_knee_2 = ((-span_2_x * cos_azimuth_2 - span_2_y * sin_azimuth_2) * sin_a2 - z * cos_a2) / outer_arm_2
         span_3_x = x - part_of_pivot_3_x  # rod 3
         span_3_y = y - part_of_pivot_3_y  # rod 3
-        branch_knee_3 = ((-span_3_x*cos_azimuth_3 - span_3_y*sin_azimuth_3)*sin_a3 - z*cos_a3)/outer_arm_3
+        branch_knee_3 = ((-span_3_x * cos_azimuth_3 - span_3_y * sin_azimuth_3) * sin_a3 - z * cos_a3) / outer_arm_3
         return (
-            (
-                (x, y, z),
-                ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-                (branch_knee_1, branch_knee_2, branch_knee_3),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            (branch_knee_1, branch_knee_2, branch_knee_3),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -166,171 +146,148 @@ class ArrayPrograms(Programs):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self.constants
-        cos_azimuth_1 = k.cos_azimuth_1
-        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
-        cos_azimuth_2 = k.cos_azimuth_2
-        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
-        cos_azimuth_3 = k.cos_azimuth_3
-        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
-        inner_arm_1 = k.inner_arm_1
-        inner_arm_1_times_shortest_link = k.inner_arm_1_times_shortest_link
-        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
-        inner_arm_2 = k.inner_arm_2
+        cos_azimuth_1, cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1, k.cos_azimuth_1_times_inner_arm_1
+        cos_azimuth_2, cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2, k.cos_azimuth_2_times_inner_arm_2
+        cos_azimuth_3, cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3, k.cos_azimuth_3_times_inner_arm_3
+        inner_arm_1, inner_arm_1_times_shortest_link = k.inner_arm_1, k.inner_arm_1_times_shortest_link
+        inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
         inner_arm_2_times_shortest_link = k.inner_arm_2_times_shortest_link
-        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
-        inner_arm_3 = k.inner_arm_3
+        inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
         inner_arm_3_times_shortest_link = k.inner_arm_3_times_shortest_link
-        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        outer_arm_1 = k.outer_arm_1
-        outer_arm_2 = k.outer_arm_2
-        outer_arm_3 = k.outer_arm_3
-        part_of_pivot_1_x = k.part_of_pivot_1_x
-        part_of_pivot_1_y = k.part_of_pivot_1_y
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_3_x = k.part_of_pivot_3_x
-        part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
-        sin_azimuth_1 = k.sin_azimuth_1
-        sin_azimuth_2 = k.sin_azimuth_2
-        sin_azimuth_3 = k.sin_azimuth_3
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        twice_inner_arm_1 = k.twice_inner_arm_1
-        twice_inner_arm_2 = k.twice_inner_arm_2
+        inner_arm_3_times_sin_azimuth_3, mid_a1, mid_a2 = k.inner_arm_3_times_sin_azimuth_3, k.mid_a1, k.mid_a2
+        mid_a3, min_type2_margin, offset_a1, offset_a2 = k.mid_a3, k.min_type2_margin, k.offset_a1, k.offset_a2
+        offset_a3, outer_arm_1, outer_arm_2, outer_arm_3 = k.offset_a3, k.outer_arm_1, k.outer_arm_2, k.outer_arm_3
+        part_of_pivot_1_x, part_of_pivot_1_y = k.part_of_pivot_1_x, k.part_of_pivot_1_y
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        part_of_pivot_3_x, part_of_pivot_3_y = k.part_of_pivot_3_x, k.part_of_pivot_3_y
+        part_of_type2_rods_coplanar, sin_azimuth_1 = k.part_of_type2_rods_coplanar, k.sin_azimuth_1
+        sin_azimuth_2, sin_azimuth_3, single_a1, single_a2 = k.sin_azimuth_2, k.sin_azimuth_3, k.single_a1, k.single_a2
+        single_a3, twice_inner_arm_1, twice_inner_arm_2 = k.single_a3, k.twice_inner_arm_1, k.twice_inner_arm_2
         twice_inner_arm_3 = k.twice_inner_arm_3
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         span_1_x = x - part_of_pivot_1_x  # rod 1
         span_1_y = y - part_of_pivot_1_y  # rod 1
-        along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
-        z_squared = z*z
-        effective_a1 = root(z_squared + along_a1*along_a1)  # effective length that the angle turns
+        along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
+        z_squared = z * z
+        effective_a1 = root(z_squared + along_a1 * along_a1)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > inner_arm_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        swing_scale_a1 = divisor_a1 * twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
+        part_of_third_square_a1 = span_1_x * sin_azimuth_1 - span_1_y * cos_azimuth_1
         # square of the third side
-        third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
+        third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
         # 1 - cosine, times the scale
-        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
+        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = divisor_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        one_plus_cos_a1 = effective_a1_plus_inner_arm_1 * effective_a1_plus_inner_arm_1 - third_square_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, sine_square_a1 >= -1e-12 * swing_scale_a1 * swing_scale_a1, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y  # rod 2
-        along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = root(z_squared + along_a2*along_a2)  # effective length that the angle turns
+        along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
+        effective_a2 = root(z_squared + along_a2 * along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_2_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > inner_arm_2_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        swing_scale_a2 = divisor_a2 * twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
+        part_of_third_square_a2 = span_2_x * sin_azimuth_2 - span_2_y * cos_azimuth_2
         # square of the third side
-        third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
+        third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
         # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
+        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = divisor_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        one_plus_cos_a2 = effective_a2_plus_inner_arm_2 * effective_a2_plus_inner_arm_2 - third_square_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -1e-12 * swing_scale_a2 * swing_scale_a2, Status.UNREACHABLE)
         span_3_x = x - part_of_pivot_3_x  # rod 3
         span_3_y = y - part_of_pivot_3_y  # rod 3
-        along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = root(z_squared + along_a3*along_a3)  # effective length that the angle turns
+        along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
+        effective_a3 = root(z_squared + along_a3 * along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > inner_arm_3_times_shortest_link, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > inner_arm_3_times_shortest_link, effective_a3, 1.0)
-        swing_scale_a3 = divisor_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        swing_scale_a3 = divisor_a3 * twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
+        part_of_third_square_a3 = span_3_x * sin_azimuth_3 - span_3_y * cos_azimuth_3
         # square of the third side
-        third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
+        third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
         # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
+        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = divisor_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        one_plus_cos_a3 = effective_a3_plus_inner_arm_3 * effective_a3_plus_inner_arm_3 - third_square_a3
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
+        require(status, sine_square_a3 >= -1e-12 * swing_scale_a3 * swing_scale_a3, Status.UNREACHABLE)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
-        cos_a1 = (along_a1*cos_swing_a1 + z*sin_swing_a1)/divisor_a1
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / sum_a1
+        sin_swing_a1 = -2.0 * root(sine_square_a1) * sigma_knee_1 / sum_a1
+        cos_a1 = (along_a1 * cos_swing_a1 + z * sin_swing_a1) / divisor_a1
+        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1  # rod 1
         rod_1_y = y - pivot_1_y
-        sin_a1 = (along_a1*sin_swing_a1 - z*cos_swing_a1)/divisor_a1
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        sin_a1 = (along_a1 * sin_swing_a1 - z * cos_swing_a1) / divisor_a1
+        pivot_1_z = -inner_arm_1 * sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
-        cos_a2 = (along_a2*cos_swing_a2 + z*sin_swing_a2)/divisor_a2
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_knee_2 / sum_a2
+        cos_a2 = (along_a2 * cos_swing_a2 + z * sin_swing_a2) / divisor_a2
+        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
-        sin_a2 = (along_a2*sin_swing_a2 - z*cos_swing_a2)/divisor_a2
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        sin_a2 = (along_a2 * sin_swing_a2 - z * cos_swing_a2) / divisor_a2
+        pivot_2_z = -inner_arm_2 * sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/sum_a3
-        cos_a3 = (along_a3*cos_swing_a3 + z*sin_swing_a3)/divisor_a3
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / sum_a3
+        sin_swing_a3 = -2.0 * root(sine_square_a3) * sigma_knee_3 / sum_a3
+        cos_a3 = (along_a3 * cos_swing_a3 + z * sin_swing_a3) / divisor_a3
+        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
-        sin_a3 = (along_a3*sin_swing_a3 - z*cos_swing_a3)/divisor_a3
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        sin_a3 = (along_a3 * sin_swing_a3 - z * cos_swing_a3) / divisor_a3
+        pivot_3_z = -inner_arm_3 * sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
-        type2_rods_coplanar = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
-                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-            )
+        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         require(status, type2_rods_coplanar >= min_type2_margin, Status.UNREACHABLE)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: its turn
         return (axis_a1, axis_a2, axis_a3), status
 
@@ -338,12 +295,8 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
+        highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
+        lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -354,276 +307,232 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self.constants
-        cos_azimuth_1 = k.cos_azimuth_1
-        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
-        cos_azimuth_2 = k.cos_azimuth_2
-        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
-        cos_azimuth_3 = k.cos_azimuth_3
-        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
-        inner_arm_1 = k.inner_arm_1
-        inner_arm_1_times_shortest_link = k.inner_arm_1_times_shortest_link
-        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
-        inner_arm_2 = k.inner_arm_2
+        cos_azimuth_1, cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1, k.cos_azimuth_1_times_inner_arm_1
+        cos_azimuth_2, cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2, k.cos_azimuth_2_times_inner_arm_2
+        cos_azimuth_3, cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3, k.cos_azimuth_3_times_inner_arm_3
+        inner_arm_1, inner_arm_1_times_shortest_link = k.inner_arm_1, k.inner_arm_1_times_shortest_link
+        inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
         inner_arm_2_times_shortest_link = k.inner_arm_2_times_shortest_link
-        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
-        inner_arm_3 = k.inner_arm_3
+        inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
         inner_arm_3_times_shortest_link = k.inner_arm_3_times_shortest_link
-        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        outer_arm_1 = k.outer_arm_1
-        outer_arm_2 = k.outer_arm_2
-        outer_arm_3 = k.outer_arm_3
-        part_of_pivot_1_x = k.part_of_pivot_1_x
-        part_of_pivot_1_y = k.part_of_pivot_1_y
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_3_x = k.part_of_pivot_3_x
-        part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
-        sin_azimuth_1 = k.sin_azimuth_1
-        sin_azimuth_2 = k.sin_azimuth_2
-        sin_azimuth_3 = k.sin_azimuth_3
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        twice_inner_arm_1 = k.twice_inner_arm_1
-        twice_inner_arm_2 = k.twice_inner_arm_2
+        inner_arm_3_times_sin_azimuth_3, mid_a1, mid_a2 = k.inner_arm_3_times_sin_azimuth_3, k.mid_a1, k.mid_a2
+        mid_a3, min_type2_margin, offset_a1, offset_a2 = k.mid_a3, k.min_type2_margin, k.offset_a1, k.offset_a2
+        offset_a3, outer_arm_1, outer_arm_2, outer_arm_3 = k.offset_a3, k.outer_arm_1, k.outer_arm_2, k.outer_arm_3
+        part_of_pivot_1_x, part_of_pivot_1_y = k.part_of_pivot_1_x, k.part_of_pivot_1_y
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        part_of_pivot_3_x, part_of_pivot_3_y = k.part_of_pivot_3_x, k.part_of_pivot_3_y
+        part_of_type2_rods_coplanar, sin_azimuth_1 = k.part_of_type2_rods_coplanar, k.sin_azimuth_1
+        sin_azimuth_2, sin_azimuth_3, single_a1, single_a2 = k.sin_azimuth_2, k.sin_azimuth_3, k.single_a1, k.single_a2
+        single_a3, twice_inner_arm_1, twice_inner_arm_2 = k.single_a3, k.twice_inner_arm_1, k.twice_inner_arm_2
         twice_inner_arm_3 = k.twice_inner_arm_3
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         span_1_x = x - part_of_pivot_1_x  # rod 1
         span_1_y = y - part_of_pivot_1_y  # rod 1
-        along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
-        z_squared = z*z
-        effective_a1 = root(z_squared + along_a1*along_a1)  # effective length that the angle turns
+        along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
+        z_squared = z * z
+        effective_a1 = root(z_squared + along_a1 * along_a1)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > inner_arm_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
-        part_of_third_square_a1 = span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1
+        swing_scale_a1 = divisor_a1 * twice_inner_arm_1  # a1: law of cosines in the rod 1 equation
+        part_of_third_square_a1 = span_1_x * sin_azimuth_1 - span_1_y * cos_azimuth_1
         # square of the third side
-        third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
+        third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = divisor_a1 - inner_arm_1
         # 1 - cosine, times the scale
-        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
+        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = divisor_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        one_plus_cos_a1 = effective_a1_plus_inner_arm_1 * effective_a1_plus_inner_arm_1 - third_square_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, sine_square_a1 >= -1e-12 * swing_scale_a1 * swing_scale_a1, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y  # rod 2
-        along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = root(z_squared + along_a2*along_a2)  # effective length that the angle turns
+        along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
+        effective_a2 = root(z_squared + along_a2 * along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_2_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > inner_arm_2_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
-        part_of_third_square_a2 = span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2
+        swing_scale_a2 = divisor_a2 * twice_inner_arm_2  # a2: law of cosines in the rod 2 equation
+        part_of_third_square_a2 = span_2_x * sin_azimuth_2 - span_2_y * cos_azimuth_2
         # square of the third side
-        third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
+        third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = divisor_a2 - inner_arm_2
         # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
+        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = divisor_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        one_plus_cos_a2 = effective_a2_plus_inner_arm_2 * effective_a2_plus_inner_arm_2 - third_square_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -1e-12 * swing_scale_a2 * swing_scale_a2, Status.UNREACHABLE)
         span_3_x = x - part_of_pivot_3_x  # rod 3
         span_3_y = y - part_of_pivot_3_y  # rod 3
-        along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = root(z_squared + along_a3*along_a3)  # effective length that the angle turns
+        along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
+        effective_a3 = root(z_squared + along_a3 * along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > inner_arm_3_times_shortest_link, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > inner_arm_3_times_shortest_link, effective_a3, 1.0)
-        swing_scale_a3 = divisor_a3*twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
-        part_of_third_square_a3 = span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3
+        swing_scale_a3 = divisor_a3 * twice_inner_arm_3  # a3: law of cosines in the rod 3 equation
+        part_of_third_square_a3 = span_3_x * sin_azimuth_3 - span_3_y * cos_azimuth_3
         # square of the third side
-        third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
+        third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = divisor_a3 - inner_arm_3
         # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
+        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = divisor_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        one_plus_cos_a3 = effective_a3_plus_inner_arm_3 * effective_a3_plus_inner_arm_3 - third_square_a3
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
+        require(status, sine_square_a3 >= -1e-12 * swing_scale_a3 * swing_scale_a3, Status.UNREACHABLE)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1_inward = 2.0*root(sine_square_a1)/sum_a1
-        cos_a1_outward = (along_a1*cos_swing_a1 - z*sin_swing_a1_inward)/divisor_a1
-        pivot_1_x_outward = part_of_pivot_1_x + cos_a1_outward*cos_azimuth_1_times_inner_arm_1  # rod 1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / sum_a1
+        sin_swing_a1_inward = 2.0 * root(sine_square_a1) / sum_a1
+        cos_a1_outward = (along_a1 * cos_swing_a1 - z * sin_swing_a1_inward) / divisor_a1
+        pivot_1_x_outward = part_of_pivot_1_x + cos_a1_outward * cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x_outward = x - pivot_1_x_outward
-        pivot_1_y_outward = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1_outward  # rod 1
+        pivot_1_y_outward = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1_outward  # rod 1
         rod_1_y_outward = y - pivot_1_y_outward
-        sin_a1_outward = (-along_a1*sin_swing_a1_inward - z*cos_swing_a1)/divisor_a1
-        pivot_1_z_outward = -inner_arm_1*sin_a1_outward  # rod 1
+        sin_a1_outward = (-along_a1 * sin_swing_a1_inward - z * cos_swing_a1) / divisor_a1
+        pivot_1_z_outward = -inner_arm_1 * sin_a1_outward  # rod 1
         rod_1_z_outward = z - pivot_1_z_outward
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
-        cos_a2_outward = (along_a2*cos_swing_a2 - z*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_outward = part_of_pivot_2_x + cos_a2_outward*cos_azimuth_2_times_inner_arm_2  # rod 2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_swing_a2_inward = 2.0 * root(sine_square_a2) / sum_a2
+        cos_a2_outward = (along_a2 * cos_swing_a2 - z * sin_swing_a2_inward) / divisor_a2
+        pivot_2_x_outward = part_of_pivot_2_x + cos_a2_outward * cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward
-        pivot_2_y_outward = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2_outward  # rod 2
+        pivot_2_y_outward = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2_outward  # rod 2
         rod_2_y_outward = y - pivot_2_y_outward
-        sin_a2_outward = (-along_a2*sin_swing_a2_inward - z*cos_swing_a2)/divisor_a2
-        pivot_2_z_outward = -inner_arm_2*sin_a2_outward  # rod 2
+        sin_a2_outward = (-along_a2 * sin_swing_a2_inward - z * cos_swing_a2) / divisor_a2
+        pivot_2_z_outward = -inner_arm_2 * sin_a2_outward  # rod 2
         rod_2_z_outward = z - pivot_2_z_outward
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        sin_swing_a3_inward = 2.0*root(sine_square_a3)/sum_a3
-        cos_a3_outward = (along_a3*cos_swing_a3 - z*sin_swing_a3_inward)/divisor_a3
-        pivot_3_x_outward = part_of_pivot_3_x + cos_a3_outward*cos_azimuth_3_times_inner_arm_3  # rod 3
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / sum_a3
+        sin_swing_a3_inward = 2.0 * root(sine_square_a3) / sum_a3
+        cos_a3_outward = (along_a3 * cos_swing_a3 - z * sin_swing_a3_inward) / divisor_a3
+        pivot_3_x_outward = part_of_pivot_3_x + cos_a3_outward * cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x_outward = x - pivot_3_x_outward
-        pivot_3_y_outward = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3_outward  # rod 3
+        pivot_3_y_outward = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3_outward  # rod 3
         rod_3_y_outward = y - pivot_3_y_outward
-        sin_a3_outward = (-along_a3*sin_swing_a3_inward - z*cos_swing_a3)/divisor_a3
-        pivot_3_z_outward = -inner_arm_3*sin_a3_outward  # rod 3
+        sin_a3_outward = (-along_a3 * sin_swing_a3_inward - z * cos_swing_a3) / divisor_a3
+        pivot_3_z_outward = -inner_arm_3 * sin_a3_outward  # rod 3
         rod_3_z_outward = z - pivot_3_z_outward
-        type2_rods_coplanar_outward_outward_outward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_outward*rod_3_y_outward - rod_2_y_outward*rod_3_z_outward)*rod_1_x_outward
-                + rod_1_y_outward*(rod_2_x_outward*rod_3_z_outward - rod_2_z_outward*rod_3_x_outward)
-                + (rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_y_outward)*rod_1_z_outward
-            )
+        type2_rods_coplanar_outward_outward_outward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_outward * rod_3_y_outward - rod_2_y_outward * rod_3_z_outward) * rod_1_x_outward
+            + rod_1_y_outward * (rod_2_x_outward * rod_3_z_outward - rod_2_z_outward * rod_3_x_outward)
+            + (rod_2_y_outward * rod_3_x_outward - rod_2_x_outward * rod_3_y_outward) * rod_1_z_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_outward = select(
-            type2_rods_coplanar_outward_outward_outward >= min_type2_margin, 0, 3,
-        )
+        refusal_outward_outward_outward = select(type2_rods_coplanar_outward_outward_outward >= min_type2_margin, 0, 3)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)  # A1: its turn
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        # A1: its turn
+        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)  # A2: its turn
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        # A2: its turn
+        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)  # A3: its turn
-        cos_a3_inward = (along_a3*cos_swing_a3 + z*sin_swing_a3_inward)/divisor_a3
-        pivot_3_x_inward = part_of_pivot_3_x + cos_a3_inward*cos_azimuth_3_times_inner_arm_3  # rod 3
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        # A3: its turn
+        axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)
+        cos_a3_inward = (along_a3 * cos_swing_a3 + z * sin_swing_a3_inward) / divisor_a3
+        pivot_3_x_inward = part_of_pivot_3_x + cos_a3_inward * cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x_inward = x - pivot_3_x_inward
-        pivot_3_y_inward = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3_inward  # rod 3
+        pivot_3_y_inward = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3_inward  # rod 3
         rod_3_y_inward = y - pivot_3_y_inward
-        sin_a3_inward = (along_a3*sin_swing_a3_inward - z*cos_swing_a3)/divisor_a3
-        pivot_3_z_inward = -inner_arm_3*sin_a3_inward  # rod 3
+        sin_a3_inward = (along_a3 * sin_swing_a3_inward - z * cos_swing_a3) / divisor_a3
+        pivot_3_z_inward = -inner_arm_3 * sin_a3_inward  # rod 3
         rod_3_z_inward = z - pivot_3_z_inward
-        type2_rods_coplanar_outward_outward_inward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_outward*rod_3_y_inward - rod_2_y_outward*rod_3_z_inward)*rod_1_x_outward
-                + rod_1_y_outward*(rod_2_x_outward*rod_3_z_inward - rod_2_z_outward*rod_3_x_inward)
-                + (rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_y_inward)*rod_1_z_outward
-            )
+        type2_rods_coplanar_outward_outward_inward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_outward * rod_3_y_inward - rod_2_y_outward * rod_3_z_inward) * rod_1_x_outward
+            + rod_1_y_outward * (rod_2_x_outward * rod_3_z_inward - rod_2_z_outward * rod_3_x_inward)
+            + (rod_2_y_outward * rod_3_x_inward - rod_2_x_outward * rod_3_y_inward) * rod_1_z_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = select(type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0, 3)
         axis_a3_inward = nearest_period(offset_a3 + degrees(sin_a3_inward, cos_a3_inward), near_a3)  # A3: its turn
-        cos_a2_inward = (along_a2*cos_swing_a2 + z*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_inward = part_of_pivot_2_x + cos_a2_inward*cos_azimuth_2_times_inner_arm_2  # rod 2
+        cos_a2_inward = (along_a2 * cos_swing_a2 + z * sin_swing_a2_inward) / divisor_a2
+        pivot_2_x_inward = part_of_pivot_2_x + cos_a2_inward * cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
-        pivot_2_y_inward = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2_inward  # rod 2
+        pivot_2_y_inward = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2_inward  # rod 2
         rod_2_y_inward = y - pivot_2_y_inward
-        sin_a2_inward = (along_a2*sin_swing_a2_inward - z*cos_swing_a2)/divisor_a2
-        pivot_2_z_inward = -inner_arm_2*sin_a2_inward  # rod 2
+        sin_a2_inward = (along_a2 * sin_swing_a2_inward - z * cos_swing_a2) / divisor_a2
+        pivot_2_z_inward = -inner_arm_2 * sin_a2_inward  # rod 2
         rod_2_z_inward = z - pivot_2_z_inward
-        type2_rods_coplanar_outward_inward_outward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_inward*rod_3_y_outward - rod_2_y_inward*rod_3_z_outward)*rod_1_x_outward
-                + rod_1_y_outward*(rod_2_x_inward*rod_3_z_outward - rod_2_z_inward*rod_3_x_outward)
-                + (rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_y_outward)*rod_1_z_outward
-            )
+        type2_rods_coplanar_outward_inward_outward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_inward * rod_3_y_outward - rod_2_y_inward * rod_3_z_outward) * rod_1_x_outward
+            + rod_1_y_outward * (rod_2_x_inward * rod_3_z_outward - rod_2_z_inward * rod_3_x_outward)
+            + (rod_2_y_inward * rod_3_x_outward - rod_2_x_inward * rod_3_y_outward) * rod_1_z_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = select(type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0, 3)
         axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)  # A2: its turn
-        type2_rods_coplanar_outward_inward_inward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_inward*rod_3_y_inward - rod_2_y_inward*rod_3_z_inward)*rod_1_x_outward
-                + rod_1_y_outward*(rod_2_x_inward*rod_3_z_inward - rod_2_z_inward*rod_3_x_inward)
-                + (rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_y_inward)*rod_1_z_outward
-            )
+        type2_rods_coplanar_outward_inward_inward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_inward * rod_3_y_inward - rod_2_y_inward * rod_3_z_inward) * rod_1_x_outward
+            + rod_1_y_outward * (rod_2_x_inward * rod_3_z_inward - rod_2_z_inward * rod_3_x_inward)
+            + (rod_2_y_inward * rod_3_x_inward - rod_2_x_inward * rod_3_y_inward) * rod_1_z_outward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = select(type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0, 3)
-        cos_a1_inward = (along_a1*cos_swing_a1 + z*sin_swing_a1_inward)/divisor_a1
-        pivot_1_x_inward = part_of_pivot_1_x + cos_a1_inward*cos_azimuth_1_times_inner_arm_1  # rod 1
+        cos_a1_inward = (along_a1 * cos_swing_a1 + z * sin_swing_a1_inward) / divisor_a1
+        pivot_1_x_inward = part_of_pivot_1_x + cos_a1_inward * cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x_inward = x - pivot_1_x_inward
-        pivot_1_y_inward = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1_inward  # rod 1
+        pivot_1_y_inward = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1_inward  # rod 1
         rod_1_y_inward = y - pivot_1_y_inward
-        sin_a1_inward = (along_a1*sin_swing_a1_inward - z*cos_swing_a1)/divisor_a1
-        pivot_1_z_inward = -inner_arm_1*sin_a1_inward  # rod 1
+        sin_a1_inward = (along_a1 * sin_swing_a1_inward - z * cos_swing_a1) / divisor_a1
+        pivot_1_z_inward = -inner_arm_1 * sin_a1_inward  # rod 1
         rod_1_z_inward = z - pivot_1_z_inward
-        type2_rods_coplanar_inward_outward_outward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_outward*rod_3_y_outward - rod_2_y_outward*rod_3_z_outward)*rod_1_x_inward
-                + rod_1_y_inward*(rod_2_x_outward*rod_3_z_outward - rod_2_z_outward*rod_3_x_outward)
-                + (rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_y_outward)*rod_1_z_inward
-            )
+        type2_rods_coplanar_inward_outward_outward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_outward * rod_3_y_outward - rod_2_y_outward * rod_3_z_outward) * rod_1_x_inward
+            + rod_1_y_inward * (rod_2_x_outward * rod_3_z_outward - rod_2_z_outward * rod_3_x_outward)
+            + (rod_2_y_outward * rod_3_x_outward - rod_2_x_outward * rod_3_y_outward) * rod_1_z_inward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = select(type2_rods_coplanar_inward_outward_outward >= min_type2_margin, 0, 3)
         axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)  # A1: its turn
-        type2_rods_coplanar_inward_outward_inward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_outward*rod_3_y_inward - rod_2_y_outward*rod_3_z_inward)*rod_1_x_inward
-                + rod_1_y_inward*(rod_2_x_outward*rod_3_z_inward - rod_2_z_outward*rod_3_x_inward)
-                + (rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_y_inward)*rod_1_z_inward
-            )
+        type2_rods_coplanar_inward_outward_inward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_outward * rod_3_y_inward - rod_2_y_outward * rod_3_z_inward) * rod_1_x_inward
+            + rod_1_y_inward * (rod_2_x_outward * rod_3_z_inward - rod_2_z_outward * rod_3_x_inward)
+            + (rod_2_y_outward * rod_3_x_inward - rod_2_x_outward * rod_3_y_inward) * rod_1_z_inward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_inward = select(type2_rods_coplanar_inward_outward_inward >= min_type2_margin, 0, 3)
-        type2_rods_coplanar_inward_inward_outward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_inward*rod_3_y_outward - rod_2_y_inward*rod_3_z_outward)*rod_1_x_inward
-                + rod_1_y_inward*(rod_2_x_inward*rod_3_z_outward - rod_2_z_inward*rod_3_x_outward)
-                + (rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_y_outward)*rod_1_z_inward
-            )
+        type2_rods_coplanar_inward_inward_outward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_inward * rod_3_y_outward - rod_2_y_inward * rod_3_z_outward) * rod_1_x_inward
+            + rod_1_y_inward * (rod_2_x_inward * rod_3_z_outward - rod_2_z_inward * rod_3_x_outward)
+            + (rod_2_y_inward * rod_3_x_outward - rod_2_x_inward * rod_3_y_outward) * rod_1_z_inward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_outward = select(type2_rods_coplanar_inward_inward_outward >= min_type2_margin, 0, 3)
-        type2_rods_coplanar_inward_inward_inward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_inward*rod_3_y_inward - rod_2_y_inward*rod_3_z_inward)*rod_1_x_inward
-                + rod_1_y_inward*(rod_2_x_inward*rod_3_z_inward - rod_2_z_inward*rod_3_x_inward)
-                + (rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_y_inward)*rod_1_z_inward
-            )
+        type2_rods_coplanar_inward_inward_inward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_inward * rod_3_y_inward - rod_2_y_inward * rod_3_z_inward) * rod_1_x_inward
+            + rod_1_y_inward * (rod_2_x_inward * rod_3_z_inward - rod_2_z_inward * rod_3_x_inward)
+            + (rod_2_y_inward * rod_3_x_inward - rod_2_x_inward * rod_3_y_inward) * rod_1_z_inward
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_inward = select(type2_rods_coplanar_inward_inward_inward >= min_type2_margin, 0, 3)

@@ -23,8 +23,7 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_x, axis_y = axes
         k = self.constants
-        offset_x = k.offset_x
-        offset_y = k.offset_y
+        offset_x, offset_y = k.offset_x, k.offset_y
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9), Status.BAD_INPUT)
@@ -33,14 +32,12 @@ class ArrayPrograms(Programs):
         return ((joint_x, joint_y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        machine_scale_times_plane = k.machine_scale_times_plane
-        offset_x = k.offset_x
-        offset_y = k.offset_y
+        machine_scale_times_plane, offset_x, offset_y = k.machine_scale_times_plane, k.offset_x, k.offset_y
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
@@ -54,10 +51,7 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_x, axis_y = axes
         k = self.constants
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
+        highest_x, highest_y, lowest_x, lowest_y = k.highest_x, k.highest_y, k.lowest_x, k.lowest_y
         status = passed(axes)
         # limits of X
         require(status, (axis_x >= lowest_x) & (axis_x <= highest_x), Status.UNREACHABLE)

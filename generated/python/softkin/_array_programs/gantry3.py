@@ -23,15 +23,11 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_x, axis_y, axis_z = axes
         k = self.constants
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
+        offset_x, offset_y, offset_z = k.offset_x, k.offset_y, k.offset_z
         status = passed(axes)
         # numbers of reasonable size
         require(
-            status,
-            (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9) & (absolute(axis_z) <= 1e9),
-            Status.BAD_INPUT,
+            status, (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9) & (absolute(axis_z) <= 1e9), Status.BAD_INPUT
         )
         joint_x = axis_x - offset_x
         joint_y = axis_y - offset_y
@@ -39,14 +35,12 @@ class ArrayPrograms(Programs):
         return ((joint_x, joint_y, joint_z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
+        offset_x, offset_y, offset_z = k.offset_x, k.offset_y, k.offset_z
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
@@ -59,12 +53,8 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_x, axis_y, axis_z = axes
         k = self.constants
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        highest_z = k.highest_z
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        lowest_z = k.lowest_z
+        highest_x, highest_y, highest_z, lowest_x = k.highest_x, k.highest_y, k.highest_z, k.lowest_x
+        lowest_y, lowest_z = k.lowest_y, k.lowest_z
         status = passed(axes)
         # limits of X
         require(status, (axis_x >= lowest_x) & (axis_x <= highest_x), Status.UNREACHABLE)

@@ -41,39 +41,33 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_x, axis_y, axis_z, axis_r = axes
         k = self.constants
-        direction_r = k.direction_r
-        offset_r = k.offset_r
-        offset_x = k.offset_x
-        offset_y = k.offset_y
+        direction_r, offset_r, offset_x, offset_y = k.direction_r, k.offset_r, k.offset_x, k.offset_y
         offset_z = k.offset_z
         status = passed(axes)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(axis_r) <= 1e9) & (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9)
-                & (absolute(axis_z) <= 1e9)
-            ),
+            (absolute(axis_r) <= 1e9)
+            & (absolute(axis_x) <= 1e9)
+            & (absolute(axis_y) <= 1e9)
+            & (absolute(axis_z) <= 1e9),
             Status.BAD_INPUT,
         )
         joint_x = axis_x - offset_x
         joint_y = axis_y - offset_y
         joint_z = axis_z - offset_z
-        r = DEGREE*(axis_r - offset_r)
+        r = DEGREE * (axis_r - offset_r)
         cos_r = cos(r)
         sin_r = sin(r)
-        direction_r_times_sin_r = direction_r*sin_r
+        direction_r_times_sin_r = direction_r * sin_r
         return (
-            (
-                (joint_x, joint_y, joint_z),
-                ((cos_r, -direction_r_times_sin_r, 0.0), (direction_r_times_sin_r, cos_r, 0.0), (0.0, 0.0, 1.0)),
-                (),
-            ),
-            status,
-        )
+            (joint_x, joint_y, joint_z),
+            ((cos_r, -direction_r_times_sin_r, 0.0), (direction_r_times_sin_r, cos_r, 0.0), (0.0, 0.0, 1.0)),
+            (),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -81,13 +75,8 @@ class ArrayPrograms(Programs):
         (turn_r,) = turns
         _, _, _, ref_r = reference
         k = self.constants
-        direction_r = k.direction_r
-        mid_r = k.mid_r
-        offset_r = k.offset_r
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
-        single_r = k.single_r
+        direction_r, mid_r, offset_r, offset_x, offset_y = k.direction_r, k.mid_r, k.offset_r, k.offset_x, k.offset_y
+        offset_z, single_r = k.offset_z, k.single_r
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -97,15 +86,15 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         axis_x = offset_x + x
         axis_y = offset_y + y
         axis_z = offset_z + z
-        direction_y_r = direction_r*heading_across
+        direction_y_r = direction_r * heading_across
         open_r = select(single_r, mid_r, ref_r)  # R: where its turn is open
-        near_r = select(turn_r != 0, 360.0*select(turn_r > 0, turn_r - 1, turn_r), open_r)
+        near_r = select(turn_r != 0, 360.0 * select(turn_r > 0, turn_r - 1, turn_r), open_r)
         axis_r = nearest_period(offset_r + degrees(direction_y_r, heading_along), near_r)  # R: its turn
         return (axis_x, axis_y, axis_z, axis_r), status
 
@@ -113,14 +102,8 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_x, axis_y, axis_z, axis_r = axes
         k = self.constants
-        highest_r = k.highest_r
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        highest_z = k.highest_z
-        lowest_r = k.lowest_r
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        lowest_z = k.lowest_z
+        highest_r, highest_x, highest_y, highest_z = k.highest_r, k.highest_x, k.highest_y, k.highest_z
+        lowest_r, lowest_x, lowest_y, lowest_z = k.lowest_r, k.lowest_x, k.lowest_y, k.lowest_z
         status = passed(axes)
         # limits of R
         require(status, (axis_r >= lowest_r) & (axis_r <= highest_r), Status.UNREACHABLE)

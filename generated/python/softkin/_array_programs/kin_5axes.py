@@ -44,51 +44,44 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self.constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
-        tool_length_times_tool_side = k.tool_length_times_tool_side
-        tool_side = k.tool_side
+        offset_a, offset_b, offset_x, offset_y, offset_z = k.offset_a, k.offset_b, k.offset_x, k.offset_y, k.offset_z
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
         status = passed(axes)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_x) <= 1e9)
-                & (absolute(axis_y) <= 1e9) & (absolute(axis_z) <= 1e9)
-            ),
+            (absolute(axis_a) <= 1e9)
+            & (absolute(axis_b) <= 1e9)
+            & (absolute(axis_x) <= 1e9)
+            & (absolute(axis_y) <= 1e9)
+            & (absolute(axis_z) <= 1e9),
             Status.BAD_INPUT,
         )
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         cos_a = cos(a)
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
-        r31_at_b = -tool_side*sin_b
-        r13_at_b = -r31_at_b*cos_a
+        r31_at_b = -tool_side * sin_b
+        r13_at_b = -r31_at_b * cos_a
         joint_x = axis_x - offset_x
-        x = joint_x + r13_at_b*tool_length_times_tool_side
+        x = joint_x + r13_at_b * tool_length_times_tool_side
         sin_a = sin(a)
-        r23_at_b = -r31_at_b*sin_a
+        r23_at_b = -r31_at_b * sin_a
         joint_y = axis_y - offset_y
-        y = joint_y + r23_at_b*tool_length_times_tool_side
+        y = joint_y + r23_at_b * tool_length_times_tool_side
         cos_b = cos(b)
         joint_z = axis_z - offset_z
-        z = joint_z + tool_length_times_tool_side*cos_b
-        r11_at_b = cos_a*cos_b
-        r21_at_b = cos_b*sin_a
+        z = joint_z + tool_length_times_tool_side * cos_b
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
         return (
-            (
-                (x, y, z),
-                ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)),
-                (sin_b,),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)),
+            (sin_b,),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -97,58 +90,48 @@ class ArrayPrograms(Programs):
         turn_a, turn_b = turns
         _, _, _, ref_a, ref_b = reference
         k = self.constants
-        mid_a = k.mid_a
-        mid_b = k.mid_b
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
-        single_a = k.single_a
-        single_b = k.single_b
-        tool_length_times_tool_side = k.tool_length_times_tool_side
-        tool_side = k.tool_side
+        mid_a, mid_b, offset_a, offset_b, offset_x = k.mid_a, k.mid_b, k.offset_a, k.offset_b, k.offset_x
+        offset_y, offset_z, single_a, single_b = k.offset_y, k.offset_z, k.single_a, k.single_b
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a) <= 1e9)
+            & (absolute(ref_b) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
+        wrist_x = x - r13 * tool_length_times_tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
-        wrist_y = y - r23*tool_length_times_tool_side
+        wrist_y = y - r23 * tool_length_times_tool_side
         axis_y = offset_y + wrist_y
-        wrist_z = z - r33*tool_length_times_tool_side
+        wrist_z = z - r33 * tool_length_times_tool_side
         axis_z = offset_z + wrist_z
-        r13_of_a = r13/tool_side
-        r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        r13_of_a = r13 / tool_side
+        r23_of_a = r23 / tool_side
+        radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # a: direction and distance of a point
 
         def elsewhere_direction_x_a(ref_a: Real) -> Reals:
-            free_a = (ref_a - offset_a)*DEGREE
+            free_a = (ref_a - offset_a) * DEGREE
             direction_x_a = cos(free_a)  # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_y_a = sin(free_a)
             return (direction_x_a, direction_y_a)
 
         # a: polar angle in the r13 and r23 equations; its reference where it is free
-        direction_x_a = sigma_roll*r13_of_a
-        direction_y_a = sigma_roll*r23_of_a
+        direction_x_a = sigma_roll * r13_of_a
+        direction_y_a = sigma_roll * r23_of_a
         direction_x_a, direction_y_a = elsewhere(
-            radius_a > 1e-11,
-            (direction_x_a, direction_y_a),
-            elsewhere_direction_x_a,
-            (ref_a,),
+            radius_a > 1e-11, (direction_x_a, direction_y_a), elsewhere_direction_x_a, (ref_a,)
         )
         open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
-        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
+        near_a = select(turn_a != 0, 360.0 * select(turn_a > 0, turn_a - 1, turn_a), open_a)
         axis_a = nearest_period(offset_a + degrees(direction_y_a, direction_x_a), near_a)  # A: its turn
-        a_radius_of_b = sigma_roll*radius_a
+        a_radius_of_b = sigma_roll * radius_a
         open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
-        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
+        near_b = select(turn_b != 0, 360.0 * select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b = nearest_period(offset_b + degrees(a_radius_of_b, r33), near_b)  # B: its turn
         return (axis_x, axis_y, axis_z, axis_a, axis_b), status
 
@@ -156,15 +139,8 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self.constants
-        highest_a = k.highest_a
-        highest_b = k.highest_b
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        highest_z = k.highest_z
-        lowest_a = k.lowest_a
-        lowest_b = k.lowest_b
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
+        highest_a, highest_b, highest_x, highest_y = k.highest_a, k.highest_b, k.highest_x, k.highest_y
+        highest_z, lowest_a, lowest_b, lowest_x, lowest_y = k.highest_z, k.lowest_a, k.lowest_b, k.lowest_x, k.lowest_y
         lowest_z = k.lowest_z
         status = passed(axes)
         # limits of A
@@ -180,7 +156,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -188,39 +164,32 @@ class ArrayPrograms(Programs):
         turn_a, turn_b = turns
         _, _, _, ref_a, ref_b = reference
         k = self.constants
-        mid_a = k.mid_a
-        mid_b = k.mid_b
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
-        single_a = k.single_a
-        single_b = k.single_b
-        tool_length_times_tool_side = k.tool_length_times_tool_side
-        tool_side = k.tool_side
+        mid_a, mid_b, offset_a, offset_b, offset_x = k.mid_a, k.mid_b, k.offset_a, k.offset_b, k.offset_x
+        offset_y, offset_z, single_a, single_b = k.offset_y, k.offset_z, k.single_a, k.single_b
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a) <= 1e9)
+            & (absolute(ref_b) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
+        wrist_x = x - r13 * tool_length_times_tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
-        wrist_y = y - r23*tool_length_times_tool_side
+        wrist_y = y - r23 * tool_length_times_tool_side
         axis_y = offset_y + wrist_y
-        wrist_z = z - r33*tool_length_times_tool_side
+        wrist_z = z - r33 * tool_length_times_tool_side
         axis_z = offset_z + wrist_z
-        r13_of_a = r13/tool_side
-        r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        r13_of_a = r13 / tool_side
+        r23_of_a = r23 / tool_side
+        radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # a: direction and distance of a point
 
         def elsewhere_direction_x_a_positive(ref_a: Real) -> Reals:
-            free_a = (ref_a - offset_a)*DEGREE
+            free_a = (ref_a - offset_a) * DEGREE
             # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a_positive = cos(free_a)
             direction_y_a_positive = sin(free_a)
@@ -242,11 +211,11 @@ class ArrayPrograms(Programs):
             (ref_a,),
         )
         open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
-        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
+        near_a = select(turn_a != 0, 360.0 * select(turn_a > 0, turn_a - 1, turn_a), open_a)
         # A: its turn
         axis_a_positive = nearest_period(offset_a + degrees(direction_y_a_positive, direction_x_a_positive), near_a)
         open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
-        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
+        near_b = select(turn_b != 0, 360.0 * select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b_positive = nearest_period(offset_b + degrees(radius_a, r33), near_b)  # B: its turn
         # A: its turn
         axis_a_negative = nearest_period(offset_a + degrees(direction_y_a_negative, direction_x_a_negative), near_a)

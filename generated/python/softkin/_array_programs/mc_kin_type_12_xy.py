@@ -46,31 +46,24 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        assembly_sign = k.assembly_sign
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
+        assembly_sign, link_length_1, link_length_2 = k.assembly_sign, k.link_length_1, k.link_length_2
         link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
-        link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        link_length_5 = k.link_length_5
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
-        part_of_branch_w = k.part_of_branch_w
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
-        swap_xy = k.swap_xy
+        link_length_3_by_link_length_2, link_length_5 = k.link_length_3_by_link_length_2, k.link_length_5
+        offset_a1, offset_a2, part_of_along_centres = k.offset_a1, k.offset_a2, k.part_of_along_centres
+        part_of_branch_w, part_of_normal_divisor = k.part_of_branch_w, k.part_of_normal_divisor
+        part_of_pivot_rear_x, swap_xy = k.part_of_pivot_rear_x, k.swap_xy
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
+        pivot_upper_x = -link_length_1 * sin_a1  # rod upper
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        pivot_upper_y = -link_length_1 * cos_a1  # rod upper
 
         def elsewhere_centre_1_x(pivot_upper_x: Real, pivot_upper_y: Real) -> Reals:
             centre_1_x = pivot_upper_x
@@ -80,41 +73,41 @@ class ArrayPrograms(Programs):
         centre_1_x = pivot_upper_y
         centre_1_y = pivot_upper_x
         centre_1_x, centre_1_y = elsewhere(
-            swap_xy,
-            (centre_1_x, centre_1_y),
-            elsewhere_centre_1_x,
-            (pivot_upper_x, pivot_upper_y),
+            swap_xy, (centre_1_x, centre_1_y), elsewhere_centre_1_x, (pivot_upper_x, pivot_upper_y)
         )
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
+        pivot_rear_x = part_of_pivot_rear_x * sin_a1 - pivot_upper_x - link_length_5 * cos_a2  # rod rear
         sin_a2 = sin(a2)
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = -select(swap_xy, pivot_rear_y, pivot_rear_x)*link_length_2_by_link_length_3
+        pivot_rear_y = part_of_pivot_rear_x * cos_a1 + link_length_5 * sin_a2 - pivot_upper_y  # rod rear
+        centre_2_x = -select(swap_xy, pivot_rear_y, pivot_rear_x) * link_length_2_by_link_length_3
         apart_2_x = centre_2_x - centre_1_x
-        centre_2_y = -select(swap_xy, pivot_rear_x, pivot_rear_y)*link_length_2_by_link_length_3
+        centre_2_y = -select(swap_xy, pivot_rear_x, pivot_rear_y) * link_length_2_by_link_length_3
         apart_2_y = centre_2_y - centre_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        normal_square = apart_2_x * apart_2_x + apart_2_y * apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)
-        one_by_normal_square = 1.0/normal_divisor
+        one_by_normal_square = 1.0 / normal_divisor
         # the square of the height over the centres
         height_square = (
-            0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
-            *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
-            *one_by_normal_square
+            0.25
+            * (link_length_2_plus_radius_2 - between_centres)
+            * (between_centres + link_length_2_minus_radius_2)
+            * (between_centres + link_length_2_plus_radius_2)
+            * (between_centres - link_length_2_minus_radius_2)
+            * one_by_normal_square
         )
         # the rods do not meet
         require(status, height_square >= -link_length_2_squared_times_rounding, Status.IMPOSSIBLE)
         # foot of the height, as a share
-        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = centre_1_x + foot_x - apart_2_y*rise
-        foot_y = along_centres*apart_2_y
-        y = centre_1_y + foot_y + apart_2_x*rise
+        along_centres = 0.5 * (normal_divisor + part_of_along_centres) * one_by_normal_square
+        foot_x = along_centres * apart_2_x
+        rise = root(height_square * one_by_normal_square) * assembly_sign
+        x = centre_1_x + foot_x - apart_2_y * rise
+        foot_y = along_centres * apart_2_y
+        y = centre_1_y + foot_y + apart_2_x * rise
 
         def elsewhere_span_upper_x(x: Real, y: Real) -> Reals:
             span_upper_x = x  # rod upper
@@ -124,20 +117,17 @@ class ArrayPrograms(Programs):
         span_upper_x = y  # rod upper
         span_upper_y = x  # rod upper
         span_upper_x, span_upper_y = elsewhere(swap_xy, (span_upper_x, span_upper_y), elsewhere_span_upper_x, (x, y))
-        branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
+        branch_t = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / link_length_2
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y  # rod rear
         branch_w = (
-            (
-                (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)*cos_a2
-                + (part_of_branch_w*sin_a1 - link_length_2*span_rear_x)*sin_a2
-            )
-            /link_length_2_times_link_length_4
-        )
+            (part_of_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
+            + (part_of_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
+        ) / link_length_2_times_link_length_4
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_t, branch_w)), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -145,39 +135,28 @@ class ArrayPrograms(Programs):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
-        link_length_2 = k.link_length_2
+        link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
         link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
-        link_length_5 = k.link_length_5
+        link_length_4_plus_link_length_5, link_length_5 = k.link_length_4_plus_link_length_5, k.link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_branch_w = k.part_of_branch_w
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
-        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        swap_xy = k.swap_xy
-        twice_link_length_1 = k.twice_link_length_1
-        twice_link_length_5 = k.twice_link_length_5
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
+        part_of_branch_w, part_of_pivot_rear_x = k.part_of_branch_w, k.part_of_pivot_rear_x
+        part_of_type2_arms_aligned, single_a1, single_a2 = k.part_of_type2_arms_aligned, k.single_a1, k.single_a2
+        swap_xy, twice_link_length_1, twice_link_length_5 = k.swap_xy, k.twice_link_length_1, k.twice_link_length_5
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         # z: a planar machine has none
@@ -192,50 +171,50 @@ class ArrayPrograms(Programs):
         span_upper_y = x  # rod upper
         span_upper_x, span_upper_y = elsewhere(swap_xy, (span_upper_x, span_upper_y), elsewhere_span_upper_x, (x, y))
         # effective length that the angle turns
-        effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        effective_a1 = sqrt(span_upper_x * span_upper_x + span_upper_y * span_upper_y)
         # a1: its effective length is too short
         require(status, effective_a1 > link_length_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > link_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
+        swing_scale_a1 = divisor_a1 * twice_link_length_1  # a1: law of cosines in the rod upper equation
         # 1 - cosine, times the scale
-        one_less_cos_a1 = (
-            (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
+        one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2) * (
+            divisor_a1 + link_length_1_plus_link_length_2
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (
-            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
+        one_plus_cos_a1 = (link_length_1_plus_link_length_2 - divisor_a1) * (
+            divisor_a1 - link_length_1_minus_link_length_2
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, sine_square_a1 >= -1e-12 * swing_scale_a1 * swing_scale_a1, Status.UNREACHABLE)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/sum_a1
-        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
-        along_a2 = (link_length_2*span_rear_x - part_of_branch_w*sin_a1)/link_length_2
-        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
-        across_a2 = (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)/link_length_2
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / sum_a1
+        sin_swing_a1 = -2.0 * root(sine_square_a1) * sigma_t / sum_a1
+        sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear
+        along_a2 = (link_length_2 * span_rear_x - part_of_branch_w * sin_a1) / link_length_2
+        cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y  # rod rear
+        across_a2 = (part_of_branch_w * cos_a1 - link_length_2 * span_rear_y) / link_length_2
+        effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > link_length_5_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > link_length_5_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_link_length_5  # a2: law of cosines in the rod rear equation
+        swing_scale_a2 = divisor_a2 * twice_link_length_5  # a2: law of cosines in the rod rear equation
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (
-            (divisor_a2 + link_length_4_plus_link_length_5)*(divisor_a2 + link_length_5_minus_link_length_4)
+        one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
+            divisor_a2 + link_length_5_minus_link_length_4
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (
-            (link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4)
+        one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
+            divisor_a2 - link_length_5_minus_link_length_4
         )
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        require(status, sine_square_a2 >= -1e-12 * swing_scale_a2 * swing_scale_a2, Status.UNREACHABLE)
+        pivot_upper_x = -link_length_1 * sin_a1  # rod upper
+        pivot_upper_y = -link_length_1 * cos_a1  # rod upper
 
         def elsewhere_centre_1_x(pivot_upper_x: Real, pivot_upper_y: Real) -> Reals:
             centre_1_x = pivot_upper_x
@@ -245,33 +224,30 @@ class ArrayPrograms(Programs):
         centre_1_x = pivot_upper_y
         centre_1_y = pivot_upper_x
         centre_1_x, centre_1_y = elsewhere(
-            swap_xy,
-            (centre_1_x, centre_1_y),
-            elsewhere_centre_1_x,
-            (pivot_upper_x, pivot_upper_y),
+            swap_xy, (centre_1_x, centre_1_y), elsewhere_centre_1_x, (pivot_upper_x, pivot_upper_y)
         )
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/sum_a2
-        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - pivot_upper_x - link_length_5*cos_a2  # rod rear
-        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2
-        pivot_rear_y = part_of_pivot_rear_x*cos_a1 + link_length_5*sin_a2 - pivot_upper_y  # rod rear
-        centre_2_x = select(swap_xy, -pivot_rear_y, -pivot_rear_x)*link_length_2_by_link_length_3
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_w / sum_a2
+        cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
+        pivot_rear_x = part_of_pivot_rear_x * sin_a1 - pivot_upper_x - link_length_5 * cos_a2  # rod rear
+        sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
+        pivot_rear_y = part_of_pivot_rear_x * cos_a1 + link_length_5 * sin_a2 - pivot_upper_y  # rod rear
+        centre_2_x = select(swap_xy, -pivot_rear_y, -pivot_rear_x) * link_length_2_by_link_length_3
         rod_2_x = x - centre_2_x
-        centre_2_y = select(swap_xy, -pivot_rear_x, -pivot_rear_y)*link_length_2_by_link_length_3
+        centre_2_y = select(swap_xy, -pivot_rear_x, -pivot_rear_y) * link_length_2_by_link_length_3
         rod_2_y = y - centre_2_y
-        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         require(status, type2_arms_aligned >= min_type2_margin, Status.UNREACHABLE)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         return (axis_a1, axis_a2), status
 
@@ -279,10 +255,7 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
+        highest_a1, highest_a2, lowest_a1, lowest_a2 = k.highest_a1, k.highest_a2, k.lowest_a1, k.lowest_a2
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -291,46 +264,35 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
-        link_length_2 = k.link_length_2
+        link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
         link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
-        link_length_5 = k.link_length_5
+        link_length_4_plus_link_length_5, link_length_5 = k.link_length_4_plus_link_length_5, k.link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_branch_w = k.part_of_branch_w
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
-        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        swap_xy = k.swap_xy
-        twice_link_length_1 = k.twice_link_length_1
-        twice_link_length_5 = k.twice_link_length_5
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
+        part_of_branch_w, part_of_pivot_rear_x = k.part_of_branch_w, k.part_of_pivot_rear_x
+        part_of_type2_arms_aligned, single_a1, single_a2 = k.part_of_type2_arms_aligned, k.single_a1, k.single_a2
+        swap_xy, twice_link_length_1, twice_link_length_5 = k.swap_xy, k.twice_link_length_1, k.twice_link_length_5
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         # z: a planar machine has none
@@ -345,37 +307,37 @@ class ArrayPrograms(Programs):
         span_upper_y = x  # rod upper
         span_upper_x, span_upper_y = elsewhere(swap_xy, (span_upper_x, span_upper_y), elsewhere_span_upper_x, (x, y))
         # effective length that the angle turns
-        effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        effective_a1 = sqrt(span_upper_x * span_upper_x + span_upper_y * span_upper_y)
         # a1: its effective length is too short
         require(status, effective_a1 > link_length_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > link_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_link_length_1  # a1: law of cosines in the rod upper equation
+        swing_scale_a1 = divisor_a1 * twice_link_length_1  # a1: law of cosines in the rod upper equation
         # 1 - cosine, times the scale
-        one_less_cos_a1 = (
-            (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
+        one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2) * (
+            divisor_a1 + link_length_1_plus_link_length_2
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (
-            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
+        one_plus_cos_a1 = (link_length_1_plus_link_length_2 - divisor_a1) * (
+            divisor_a1 - link_length_1_minus_link_length_2
         )
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, sine_square_a1 >= -1e-12 * swing_scale_a1 * swing_scale_a1, Status.UNREACHABLE)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1_right = 2.0*root(sine_square_a1)/sum_a1
-        sin_a1_left = (span_upper_x*cos_swing_a1 - span_upper_y*sin_swing_a1_right)/divisor_a1
-        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
-        cos_a1_left = (span_upper_y*cos_swing_a1 + span_upper_x*sin_swing_a1_right)/divisor_a1
-        pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
-        sin_a1_right = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1_right)/divisor_a1
-        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
-        cos_a1_right = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1_right)/divisor_a1
-        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / sum_a1
+        sin_swing_a1_right = 2.0 * root(sine_square_a1) / sum_a1
+        sin_a1_left = (span_upper_x * cos_swing_a1 - span_upper_y * sin_swing_a1_right) / divisor_a1
+        pivot_upper_x_left = -link_length_1 * sin_a1_left  # rod upper
+        cos_a1_left = (span_upper_y * cos_swing_a1 + span_upper_x * sin_swing_a1_right) / divisor_a1
+        pivot_upper_y_left = -link_length_1 * cos_a1_left  # rod upper
+        sin_a1_right = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1_right) / divisor_a1
+        pivot_upper_x_right = -link_length_1 * sin_a1_right  # rod upper
+        cos_a1_right = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1_right) / divisor_a1
+        pivot_upper_y_right = -link_length_1 * cos_a1_right  # rod upper
 
         def elsewhere_centre_1_x_left(
-            pivot_upper_x_left: Real, pivot_upper_x_right: Real, pivot_upper_y_left: Real, pivot_upper_y_right: Real,
+            pivot_upper_x_left: Real, pivot_upper_x_right: Real, pivot_upper_y_left: Real, pivot_upper_y_right: Real
         ) -> Reals:
             centre_1_x_left = pivot_upper_x_left
             centre_1_y_left = pivot_upper_y_left
@@ -393,31 +355,40 @@ class ArrayPrograms(Programs):
             elsewhere_centre_1_x_left,
             (pivot_upper_x_left, pivot_upper_x_right, pivot_upper_y_left, pivot_upper_y_right),
         )
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear
-        along_a2_left = (link_length_2*span_rear_x - part_of_branch_w*sin_a1_left)/link_length_2
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y  # rod rear
-        across_a2_left = (part_of_branch_w*cos_a1_left - link_length_2*span_rear_y)/link_length_2
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear
+        along_a2_left = (link_length_2 * span_rear_x - part_of_branch_w * sin_a1_left) / link_length_2
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y  # rod rear
+        across_a2_left = (part_of_branch_w * cos_a1_left - link_length_2 * span_rear_y) / link_length_2
         # effective length that the angle turns
-        effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
+        effective_a2_left = sqrt(across_a2_left * across_a2_left + along_a2_left * along_a2_left)
         divisor_a2_left = select(effective_a2_left > link_length_5_times_shortest_link, effective_a2_left, 1.0)
         # 1 - cosine, times the scale
-        one_less_cos_a2_left = (
-            (divisor_a2_left + link_length_4_plus_link_length_5)*(divisor_a2_left + link_length_5_minus_link_length_4)
+        one_less_cos_a2_left = (divisor_a2_left + link_length_4_plus_link_length_5) * (
+            divisor_a2_left + link_length_5_minus_link_length_4
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_left = (
-            (link_length_4_plus_link_length_5 - divisor_a2_left)*(divisor_a2_left - link_length_5_minus_link_length_4)
+        one_plus_cos_a2_left = (link_length_4_plus_link_length_5 - divisor_a2_left) * (
+            divisor_a2_left - link_length_5_minus_link_length_4
         )
-        both_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left  # twice the scale, with the rounding of its parts
+        # twice the scale, with the rounding of its parts
+        both_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left
         sum_a2_left = select(both_a2_left > 0.0, both_a2_left, 1.0)
-        cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left)/sum_a2_left
-        sine_square_a2_left = one_less_cos_a2_left*one_plus_cos_a2_left  # the square of sine times scale
-        sin_swing_a2_left_right = 2.0*root(sine_square_a2_left)/sum_a2_left
-        cos_a2_left_left = (across_a2_left*sin_swing_a2_left_right + along_a2_left*cos_swing_a2_left)/divisor_a2_left
-        sin_a2_left_left = (across_a2_left*cos_swing_a2_left - along_a2_left*sin_swing_a2_left_right)/divisor_a2_left
-        swing_scale_a2_left = divisor_a2_left*twice_link_length_5  # a2: law of cosines in the rod rear equation
-        cos_a2_left_right = (along_a2_left*cos_swing_a2_left - across_a2_left*sin_swing_a2_left_right)/divisor_a2_left
-        sin_a2_left_right = (across_a2_left*cos_swing_a2_left + along_a2_left*sin_swing_a2_left_right)/divisor_a2_left
+        cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left) / sum_a2_left
+        sine_square_a2_left = one_less_cos_a2_left * one_plus_cos_a2_left  # the square of sine times scale
+        sin_swing_a2_left_right = 2.0 * root(sine_square_a2_left) / sum_a2_left
+        cos_a2_left_left = (
+            across_a2_left * sin_swing_a2_left_right + along_a2_left * cos_swing_a2_left
+        ) / divisor_a2_left
+        sin_a2_left_left = (
+            across_a2_left * cos_swing_a2_left - along_a2_left * sin_swing_a2_left_right
+        ) / divisor_a2_left
+        swing_scale_a2_left = divisor_a2_left * twice_link_length_5  # a2: law of cosines in the rod rear equation
+        cos_a2_left_right = (
+            along_a2_left * cos_swing_a2_left - across_a2_left * sin_swing_a2_left_right
+        ) / divisor_a2_left
+        sin_a2_left_right = (
+            across_a2_left * cos_swing_a2_left + along_a2_left * sin_swing_a2_left_right
+        ) / divisor_a2_left
 
         def elsewhere_refusal_left_left() -> Reals:
             refusal_left_left = 3  # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -428,98 +399,94 @@ class ArrayPrograms(Programs):
         rod_1_y_left = y - centre_1_y_left
         # rod rear
         pivot_rear_x_left_left = (
-            part_of_pivot_rear_x*sin_a1_left - pivot_upper_x_left - link_length_5*cos_a2_left_left
+            part_of_pivot_rear_x * sin_a1_left - pivot_upper_x_left - link_length_5 * cos_a2_left_left
         )
         # rod rear
         pivot_rear_y_left_left = (
-            part_of_pivot_rear_x*cos_a1_left + link_length_5*sin_a2_left_left - pivot_upper_y_left
+            part_of_pivot_rear_x * cos_a1_left + link_length_5 * sin_a2_left_left - pivot_upper_y_left
         )
         centre_2_x_left_left = (
-            select(swap_xy, -pivot_rear_y_left_left, -pivot_rear_x_left_left)*link_length_2_by_link_length_3
+            select(swap_xy, -pivot_rear_y_left_left, -pivot_rear_x_left_left) * link_length_2_by_link_length_3
         )
         rod_2_x_left_left = x - centre_2_x_left_left
         centre_2_y_left_left = (
-            select(swap_xy, -pivot_rear_x_left_left, -pivot_rear_y_left_left)*link_length_2_by_link_length_3
+            select(swap_xy, -pivot_rear_x_left_left, -pivot_rear_y_left_left) * link_length_2_by_link_length_3
         )
         rod_2_y_left_left = y - centre_2_y_left_left
-        type2_arms_aligned_left_left = (
-            part_of_type2_arms_aligned*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
+        type2_arms_aligned_left_left = part_of_type2_arms_aligned * (
+            rod_1_x_left * rod_2_y_left_left - rod_1_y_left * rod_2_x_left_left
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0, 3)
         # rod rear
         pivot_rear_x_left_right = (
-            part_of_pivot_rear_x*sin_a1_left - pivot_upper_x_left - link_length_5*cos_a2_left_right
+            part_of_pivot_rear_x * sin_a1_left - pivot_upper_x_left - link_length_5 * cos_a2_left_right
         )
         # rod rear
         pivot_rear_y_left_right = (
-            part_of_pivot_rear_x*cos_a1_left + link_length_5*sin_a2_left_right - pivot_upper_y_left
+            part_of_pivot_rear_x * cos_a1_left + link_length_5 * sin_a2_left_right - pivot_upper_y_left
         )
         centre_2_x_left_right = (
-            select(swap_xy, -pivot_rear_y_left_right, -pivot_rear_x_left_right)*link_length_2_by_link_length_3
+            select(swap_xy, -pivot_rear_y_left_right, -pivot_rear_x_left_right) * link_length_2_by_link_length_3
         )
         rod_2_x_left_right = x - centre_2_x_left_right
         centre_2_y_left_right = (
-            select(swap_xy, -pivot_rear_x_left_right, -pivot_rear_y_left_right)*link_length_2_by_link_length_3
+            select(swap_xy, -pivot_rear_x_left_right, -pivot_rear_y_left_right) * link_length_2_by_link_length_3
         )
         rod_2_y_left_right = y - centre_2_y_left_right
-        type2_arms_aligned_left_right = (
-            part_of_type2_arms_aligned*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
+        type2_arms_aligned_left_right = part_of_type2_arms_aligned * (
+            rod_1_x_left * rod_2_y_left_right - rod_1_y_left * rod_2_x_left_right
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0, 3)
         refusal_left_left, refusal_left_right = elsewhere(
-            (
-                (effective_a2_left > link_length_5_times_shortest_link)
-                & (sine_square_a2_left >= -1e-12*swing_scale_a2_left*swing_scale_a2_left)
-            ),
+            (effective_a2_left > link_length_5_times_shortest_link)
+            & (sine_square_a2_left >= -1e-12 * swing_scale_a2_left * swing_scale_a2_left),
             (refusal_left_left, refusal_left_right),
             elsewhere_refusal_left_left,
             (),
         )
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1_left = nearest_period(offset_a1 + degrees(sin_a1_left, cos_a1_left), near_a1)  # A1: its turn
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: its turn
         axis_a2_left_left = nearest_period(offset_a2 + degrees(sin_a2_left_left, cos_a2_left_left), near_a2)
         # A2: its turn
         axis_a2_left_right = nearest_period(offset_a2 + degrees(sin_a2_left_right, cos_a2_left_right), near_a2)
-        along_a2_right = (link_length_2*span_rear_x - part_of_branch_w*sin_a1_right)/link_length_2
-        across_a2_right = (part_of_branch_w*cos_a1_right - link_length_2*span_rear_y)/link_length_2
+        along_a2_right = (link_length_2 * span_rear_x - part_of_branch_w * sin_a1_right) / link_length_2
+        across_a2_right = (part_of_branch_w * cos_a1_right - link_length_2 * span_rear_y) / link_length_2
         # effective length that the angle turns
-        effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
+        effective_a2_right = sqrt(across_a2_right * across_a2_right + along_a2_right * along_a2_right)
         divisor_a2_right = select(effective_a2_right > link_length_5_times_shortest_link, effective_a2_right, 1.0)
         # 1 - cosine, times the scale
-        one_less_cos_a2_right = (
-            (divisor_a2_right + link_length_4_plus_link_length_5)
-            *(divisor_a2_right + link_length_5_minus_link_length_4)
+        one_less_cos_a2_right = (divisor_a2_right + link_length_4_plus_link_length_5) * (
+            divisor_a2_right + link_length_5_minus_link_length_4
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_right = (
-            (link_length_4_plus_link_length_5 - divisor_a2_right)
-            *(divisor_a2_right - link_length_5_minus_link_length_4)
+        one_plus_cos_a2_right = (link_length_4_plus_link_length_5 - divisor_a2_right) * (
+            divisor_a2_right - link_length_5_minus_link_length_4
         )
         # twice the scale, with the rounding of its parts
         both_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right
         sum_a2_right = select(both_a2_right > 0.0, both_a2_right, 1.0)
-        cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/sum_a2_right
-        sine_square_a2_right = one_less_cos_a2_right*one_plus_cos_a2_right  # the square of sine times scale
-        sin_swing_a2_right_right = 2.0*root(sine_square_a2_right)/sum_a2_right
+        cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right) / sum_a2_right
+        sine_square_a2_right = one_less_cos_a2_right * one_plus_cos_a2_right  # the square of sine times scale
+        sin_swing_a2_right_right = 2.0 * root(sine_square_a2_right) / sum_a2_right
         cos_a2_right_left = (
-            (across_a2_right*sin_swing_a2_right_right + along_a2_right*cos_swing_a2_right)/divisor_a2_right
-        )
+            across_a2_right * sin_swing_a2_right_right + along_a2_right * cos_swing_a2_right
+        ) / divisor_a2_right
         sin_a2_right_left = (
-            (across_a2_right*cos_swing_a2_right - along_a2_right*sin_swing_a2_right_right)/divisor_a2_right
-        )
-        swing_scale_a2_right = divisor_a2_right*twice_link_length_5  # a2: law of cosines in the rod rear equation
+            across_a2_right * cos_swing_a2_right - along_a2_right * sin_swing_a2_right_right
+        ) / divisor_a2_right
+        swing_scale_a2_right = divisor_a2_right * twice_link_length_5  # a2: law of cosines in the rod rear equation
         cos_a2_right_right = (
-            (along_a2_right*cos_swing_a2_right - across_a2_right*sin_swing_a2_right_right)/divisor_a2_right
-        )
+            along_a2_right * cos_swing_a2_right - across_a2_right * sin_swing_a2_right_right
+        ) / divisor_a2_right
         sin_a2_right_right = (
-            (across_a2_right*cos_swing_a2_right + along_a2_right*sin_swing_a2_right_right)/divisor_a2_right
-        )
+            across_a2_right * cos_swing_a2_right + along_a2_right * sin_swing_a2_right_right
+        ) / divisor_a2_right
 
         def elsewhere_refusal_right_left() -> Reals:
             refusal_right_left = 3  # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -530,51 +497,49 @@ class ArrayPrograms(Programs):
         rod_1_y_right = y - centre_1_y_right
         # rod rear
         pivot_rear_x_right_left = (
-            part_of_pivot_rear_x*sin_a1_right - pivot_upper_x_right - link_length_5*cos_a2_right_left
+            part_of_pivot_rear_x * sin_a1_right - pivot_upper_x_right - link_length_5 * cos_a2_right_left
         )
         # rod rear
         pivot_rear_y_right_left = (
-            part_of_pivot_rear_x*cos_a1_right + link_length_5*sin_a2_right_left - pivot_upper_y_right
+            part_of_pivot_rear_x * cos_a1_right + link_length_5 * sin_a2_right_left - pivot_upper_y_right
         )
         centre_2_x_right_left = (
-            select(swap_xy, -pivot_rear_y_right_left, -pivot_rear_x_right_left)*link_length_2_by_link_length_3
+            select(swap_xy, -pivot_rear_y_right_left, -pivot_rear_x_right_left) * link_length_2_by_link_length_3
         )
         rod_2_x_right_left = x - centre_2_x_right_left
         centre_2_y_right_left = (
-            select(swap_xy, -pivot_rear_x_right_left, -pivot_rear_y_right_left)*link_length_2_by_link_length_3
+            select(swap_xy, -pivot_rear_x_right_left, -pivot_rear_y_right_left) * link_length_2_by_link_length_3
         )
         rod_2_y_right_left = y - centre_2_y_right_left
-        type2_arms_aligned_right_left = (
-            part_of_type2_arms_aligned*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
+        type2_arms_aligned_right_left = part_of_type2_arms_aligned * (
+            rod_1_x_right * rod_2_y_right_left - rod_1_y_right * rod_2_x_right_left
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0, 3)
         # rod rear
         pivot_rear_x_right_right = (
-            part_of_pivot_rear_x*sin_a1_right - pivot_upper_x_right - link_length_5*cos_a2_right_right
+            part_of_pivot_rear_x * sin_a1_right - pivot_upper_x_right - link_length_5 * cos_a2_right_right
         )
         # rod rear
         pivot_rear_y_right_right = (
-            part_of_pivot_rear_x*cos_a1_right + link_length_5*sin_a2_right_right - pivot_upper_y_right
+            part_of_pivot_rear_x * cos_a1_right + link_length_5 * sin_a2_right_right - pivot_upper_y_right
         )
         centre_2_x_right_right = (
-            select(swap_xy, -pivot_rear_y_right_right, -pivot_rear_x_right_right)*link_length_2_by_link_length_3
+            select(swap_xy, -pivot_rear_y_right_right, -pivot_rear_x_right_right) * link_length_2_by_link_length_3
         )
         rod_2_x_right_right = x - centre_2_x_right_right
         centre_2_y_right_right = (
-            select(swap_xy, -pivot_rear_x_right_right, -pivot_rear_y_right_right)*link_length_2_by_link_length_3
+            select(swap_xy, -pivot_rear_x_right_right, -pivot_rear_y_right_right) * link_length_2_by_link_length_3
         )
         rod_2_y_right_right = y - centre_2_y_right_right
-        type2_arms_aligned_right_right = (
-            part_of_type2_arms_aligned*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
+        type2_arms_aligned_right_right = part_of_type2_arms_aligned * (
+            rod_1_x_right * rod_2_y_right_right - rod_1_y_right * rod_2_x_right_right
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0, 3)
         refusal_right_left, refusal_right_right = elsewhere(
-            (
-                (effective_a2_right > link_length_5_times_shortest_link)
-                & (sine_square_a2_right >= -1e-12*swing_scale_a2_right*swing_scale_a2_right)
-            ),
+            (effective_a2_right > link_length_5_times_shortest_link)
+            & (sine_square_a2_right >= -1e-12 * swing_scale_a2_right * swing_scale_a2_right),
             (refusal_right_left, refusal_right_right),
             elsewhere_refusal_right_left,
             (),

@@ -43,58 +43,58 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        assembly_sign = k.assembly_sign
-        inner_arm = k.inner_arm
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        outer_arm = k.outer_arm
-        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
+        assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
+        outer_arm, outer_arm_squared_times_rounding = k.outer_arm, k.outer_arm_squared_times_rounding
         part_of_normal_divisor = k.part_of_normal_divisor
-        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        twice_outer_arm = k.twice_outer_arm
+        tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm * cos_a1  # rod 1
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
+        pivot_2_x = inner_arm * cos_a2 - tcp_displacement_minus_displacement  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        pivot_1_y = -inner_arm * sin_a1  # rod 1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
+        pivot_2_y = -inner_arm * sin_a2  # rod 2
         apart_2_y = pivot_2_y - pivot_1_y
-        normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
+        normal_square = apart_2_x * apart_2_x + apart_2_y * apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)
         # the square of the height over the centres
         height_square = (
-            0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
-            *between_centres/normal_divisor
+            0.25
+            * (twice_outer_arm - between_centres)
+            * (between_centres + twice_outer_arm)
+            * between_centres
+            * between_centres
+            / normal_divisor
         )
         # the rods do not meet
         require(status, height_square >= -outer_arm_squared_times_rounding, Status.IMPOSSIBLE)
-        foot_x = 0.5*apart_2_x
-        rise = root(height_square/normal_divisor)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        foot_y = 0.5*apart_2_y
-        y = foot_y + pivot_1_y + apart_2_x*rise
+        foot_x = 0.5 * apart_2_x
+        rise = root(height_square / normal_divisor) * assembly_sign
+        x = foot_x + pivot_1_x - apart_2_y * rise
+        foot_y = 0.5 * apart_2_y
+        y = foot_y + pivot_1_y + apart_2_x * rise
         span_1_x = x - tcp_displacement_minus_displacement  # rod 1
-        branch_knee_1 = (span_1_x*sin_a1 - y*cos_a1)/outer_arm
+        branch_knee_1 = (span_1_x * sin_a1 - y * cos_a1) / outer_arm
         span_2_x = tcp_displacement_minus_displacement + x  # rod 2
-        branch_knee_2 = (-y*cos_a2 - span_2_x*sin_a2)/outer_arm
+        branch_knee_2 = (-y * cos_a2 - span_2_x * sin_a2) / outer_arm
         return (
-            ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_knee_1, branch_knee_2)),
-            status,
-        )
+            (x, y, 0.0),
+            ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            (branch_knee_1, branch_knee_2),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -102,88 +102,81 @@ class ArrayPrograms(Programs):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self.constants
-        assembly_sign_by_outer_arm_squared = k.assembly_sign_by_outer_arm_squared
-        inner_arm = k.inner_arm
-        inner_arm_minus_outer_arm = k.inner_arm_minus_outer_arm
-        inner_arm_plus_outer_arm = k.inner_arm_plus_outer_arm
+        assembly_sign_by_outer_arm_squared, inner_arm = k.assembly_sign_by_outer_arm_squared, k.inner_arm
+        inner_arm_minus_outer_arm, inner_arm_plus_outer_arm = k.inner_arm_minus_outer_arm, k.inner_arm_plus_outer_arm
         inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
+        single_a2, tcp_displacement_minus_displacement = k.single_a2, k.tcp_displacement_minus_displacement
         twice_inner_arm = k.twice_inner_arm
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         span_1_x = x - tcp_displacement_minus_displacement  # rod 1
-        y_squared = y*y
-        effective_a1 = root(y_squared + span_1_x*span_1_x)  # effective length that the angle turns
+        y_squared = y * y
+        effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > inner_arm_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_inner_arm  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1 * twice_inner_arm  # a1: law of cosines in the rod 1 equation
         # 1 - cosine, times the scale
-        one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm)*(divisor_a1 + inner_arm_plus_outer_arm)
+        one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm) * (divisor_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        one_plus_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1) * (divisor_a1 - inner_arm_minus_outer_arm)
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, sine_square_a1 >= -1e-12 * swing_scale_a1 * swing_scale_a1, Status.UNREACHABLE)
         span_2_x = tcp_displacement_minus_displacement + x  # rod 2
-        effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length that the angle turns
+        effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > inner_arm_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_inner_arm  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = divisor_a2 * twice_inner_arm  # a2: law of cosines in the rod 2 equation
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2) * (divisor_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm)*(divisor_a2 + inner_arm_plus_outer_arm)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm) * (divisor_a2 + inner_arm_plus_outer_arm)
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -1e-12 * swing_scale_a2 * swing_scale_a2, Status.UNREACHABLE)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
-        cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/divisor_a1
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / sum_a1
+        sin_swing_a1 = 2.0 * root(sine_square_a1) * sigma_knee_1 / sum_a1
+        cos_a1 = (span_1_x * cos_swing_a1 - y * sin_swing_a1) / divisor_a1
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm * cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
-        sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        sin_a1 = (y * cos_swing_a1 + span_1_x * sin_swing_a1) / divisor_a1
+        pivot_1_y = -inner_arm * sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
-        cos_a2 = (span_2_x*cos_swing_a2 + y*sin_swing_a2)/divisor_a2
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_knee_2 / sum_a2
+        cos_a2 = (span_2_x * cos_swing_a2 + y * sin_swing_a2) / divisor_a2
+        pivot_2_x = inner_arm * cos_a2 - tcp_displacement_minus_displacement  # rod 2
         rod_2_x = x - pivot_2_x
-        sin_a2 = (span_2_x*sin_swing_a2 - y*cos_swing_a2)/divisor_a2
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
+        sin_a2 = (span_2_x * sin_swing_a2 - y * cos_swing_a2) / divisor_a2
+        pivot_2_y = -inner_arm * sin_a2  # rod 2
         rod_2_y = y - pivot_2_y
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         require(status, type2_arms_aligned >= min_type2_margin, Status.UNREACHABLE)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         return (axis_a1, axis_a2), status
 
@@ -191,10 +184,7 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
+        highest_a1, highest_a2, lowest_a1, lowest_a2 = k.highest_a1, k.highest_a2, k.lowest_a1, k.lowest_a2
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -203,124 +193,119 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self.constants
-        assembly_sign_by_outer_arm_squared = k.assembly_sign_by_outer_arm_squared
-        inner_arm = k.inner_arm
-        inner_arm_minus_outer_arm = k.inner_arm_minus_outer_arm
-        inner_arm_plus_outer_arm = k.inner_arm_plus_outer_arm
+        assembly_sign_by_outer_arm_squared, inner_arm = k.assembly_sign_by_outer_arm_squared, k.inner_arm
+        inner_arm_minus_outer_arm, inner_arm_plus_outer_arm = k.inner_arm_minus_outer_arm, k.inner_arm_plus_outer_arm
         inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
+        single_a2, tcp_displacement_minus_displacement = k.single_a2, k.tcp_displacement_minus_displacement
         twice_inner_arm = k.twice_inner_arm
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         span_1_x = x - tcp_displacement_minus_displacement  # rod 1
-        y_squared = y*y
-        effective_a1 = root(y_squared + span_1_x*span_1_x)  # effective length that the angle turns
+        y_squared = y * y
+        effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > inner_arm_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_inner_arm  # a1: law of cosines in the rod 1 equation
+        swing_scale_a1 = divisor_a1 * twice_inner_arm  # a1: law of cosines in the rod 1 equation
         # 1 - cosine, times the scale
-        one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm)*(divisor_a1 + inner_arm_plus_outer_arm)
+        one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm) * (divisor_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1)*(divisor_a1 - inner_arm_minus_outer_arm)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        one_plus_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1) * (divisor_a1 - inner_arm_minus_outer_arm)
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, sine_square_a1 >= -1e-12 * swing_scale_a1 * swing_scale_a1, Status.UNREACHABLE)
         span_2_x = tcp_displacement_minus_displacement + x  # rod 2
-        effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length that the angle turns
+        effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > inner_arm_times_shortest_link, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > inner_arm_times_shortest_link, effective_a2, 1.0)
-        swing_scale_a2 = divisor_a2*twice_inner_arm  # a2: law of cosines in the rod 2 equation
+        swing_scale_a2 = divisor_a2 * twice_inner_arm  # a2: law of cosines in the rod 2 equation
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2)*(divisor_a2 - inner_arm_minus_outer_arm)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2) * (divisor_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm)*(divisor_a2 + inner_arm_plus_outer_arm)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm) * (divisor_a2 + inner_arm_plus_outer_arm)
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -1e-12 * swing_scale_a2 * swing_scale_a2, Status.UNREACHABLE)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1_outward = 2.0*root(sine_square_a1)/sum_a1
-        cos_a1_outward = (span_1_x*cos_swing_a1 - y*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_outward = tcp_displacement_minus_displacement - inner_arm*cos_a1_outward  # rod 1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / sum_a1
+        sin_swing_a1_outward = 2.0 * root(sine_square_a1) / sum_a1
+        cos_a1_outward = (span_1_x * cos_swing_a1 - y * sin_swing_a1_outward) / divisor_a1
+        pivot_1_x_outward = tcp_displacement_minus_displacement - inner_arm * cos_a1_outward  # rod 1
         rod_1_x_outward = x - pivot_1_x_outward
-        sin_a1_outward = (y*cos_swing_a1 + span_1_x*sin_swing_a1_outward)/divisor_a1
-        pivot_1_y_outward = -inner_arm*sin_a1_outward  # rod 1
+        sin_a1_outward = (y * cos_swing_a1 + span_1_x * sin_swing_a1_outward) / divisor_a1
+        pivot_1_y_outward = -inner_arm * sin_a1_outward  # rod 1
         rod_1_y_outward = y - pivot_1_y_outward
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
-        cos_a2_outward = (span_2_x*cos_swing_a2 - y*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_outward = inner_arm*cos_a2_outward - tcp_displacement_minus_displacement  # rod 2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_swing_a2_inward = 2.0 * root(sine_square_a2) / sum_a2
+        cos_a2_outward = (span_2_x * cos_swing_a2 - y * sin_swing_a2_inward) / divisor_a2
+        pivot_2_x_outward = inner_arm * cos_a2_outward - tcp_displacement_minus_displacement  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward
-        sin_a2_outward = (-y*cos_swing_a2 - span_2_x*sin_swing_a2_inward)/divisor_a2
-        pivot_2_y_outward = -inner_arm*sin_a2_outward  # rod 2
+        sin_a2_outward = (-y * cos_swing_a2 - span_2_x * sin_swing_a2_inward) / divisor_a2
+        pivot_2_y_outward = -inner_arm * sin_a2_outward  # rod 2
         rod_2_y_outward = y - pivot_2_y_outward
-        type2_arms_aligned_outward_outward = (
-            assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_outward - rod_1_y_outward*rod_2_x_outward)
+        type2_arms_aligned_outward_outward = assembly_sign_by_outer_arm_squared * (
+            rod_1_x_outward * rod_2_y_outward - rod_1_y_outward * rod_2_x_outward
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_outward = select(type2_arms_aligned_outward_outward >= min_type2_margin, 0, 3)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)  # A1: its turn
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        # A1: its turn
+        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)  # A2: its turn
-        cos_a2_inward = (span_2_x*cos_swing_a2 + y*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_inward = inner_arm*cos_a2_inward - tcp_displacement_minus_displacement  # rod 2
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        # A2: its turn
+        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)
+        cos_a2_inward = (span_2_x * cos_swing_a2 + y * sin_swing_a2_inward) / divisor_a2
+        pivot_2_x_inward = inner_arm * cos_a2_inward - tcp_displacement_minus_displacement  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
-        sin_a2_inward = (span_2_x*sin_swing_a2_inward - y*cos_swing_a2)/divisor_a2
-        pivot_2_y_inward = -inner_arm*sin_a2_inward  # rod 2
+        sin_a2_inward = (span_2_x * sin_swing_a2_inward - y * cos_swing_a2) / divisor_a2
+        pivot_2_y_inward = -inner_arm * sin_a2_inward  # rod 2
         rod_2_y_inward = y - pivot_2_y_inward
-        type2_arms_aligned_outward_inward = (
-            assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)
+        type2_arms_aligned_outward_inward = assembly_sign_by_outer_arm_squared * (
+            rod_1_x_outward * rod_2_y_inward - rod_1_y_outward * rod_2_x_inward
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = select(type2_arms_aligned_outward_inward >= min_type2_margin, 0, 3)
         axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)  # A2: its turn
-        cos_a1_inward = (span_1_x*cos_swing_a1 + y*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_inward = tcp_displacement_minus_displacement - inner_arm*cos_a1_inward  # rod 1
+        cos_a1_inward = (span_1_x * cos_swing_a1 + y * sin_swing_a1_outward) / divisor_a1
+        pivot_1_x_inward = tcp_displacement_minus_displacement - inner_arm * cos_a1_inward  # rod 1
         rod_1_x_inward = x - pivot_1_x_inward
-        sin_a1_inward = (y*cos_swing_a1 - span_1_x*sin_swing_a1_outward)/divisor_a1
-        pivot_1_y_inward = -inner_arm*sin_a1_inward  # rod 1
+        sin_a1_inward = (y * cos_swing_a1 - span_1_x * sin_swing_a1_outward) / divisor_a1
+        pivot_1_y_inward = -inner_arm * sin_a1_inward  # rod 1
         rod_1_y_inward = y - pivot_1_y_inward
-        type2_arms_aligned_inward_outward = (
-            assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_outward - rod_1_y_inward*rod_2_x_outward)
+        type2_arms_aligned_inward_outward = assembly_sign_by_outer_arm_squared * (
+            rod_1_x_inward * rod_2_y_outward - rod_1_y_inward * rod_2_x_outward
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_outward = select(type2_arms_aligned_inward_outward >= min_type2_margin, 0, 3)
         axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)  # A1: its turn
-        type2_arms_aligned_inward_inward = (
-            assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)
+        type2_arms_aligned_inward_inward = assembly_sign_by_outer_arm_squared * (
+            rod_1_x_inward * rod_2_y_inward - rod_1_y_inward * rod_2_x_inward
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_inward = select(type2_arms_aligned_inward_inward >= min_type2_margin, 0, 3)

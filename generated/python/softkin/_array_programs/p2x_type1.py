@@ -38,21 +38,13 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        apart_2_y = k.apart_2_y
-        apart_2_y_squared = k.apart_2_y_squared
-        arm_length_1 = k.arm_length_1
+        apart_2_y, apart_2_y_squared, arm_length_1 = k.apart_2_y, k.apart_2_y_squared, k.arm_length_1
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_2 = k.arm_length_2
-        assembly_sign = k.assembly_sign
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_along_centres = k.part_of_along_centres
-        part_of_normal_divisor = k.part_of_normal_divisor
-        rail_y_1 = k.rail_y_1
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        arm_length_1_squared_times_rounding, arm_length_2 = k.arm_length_1_squared_times_rounding, k.arm_length_2
+        assembly_sign, offset_a1, offset_a2 = k.assembly_sign, k.offset_a1, k.offset_a2
+        part_of_along_centres, part_of_normal_divisor = k.part_of_along_centres, k.part_of_normal_divisor
+        rail_y_1, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.tcp_offset_1, k.tcp_offset_2
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
@@ -61,82 +53,76 @@ class ArrayPrograms(Programs):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        normal_square = apart_2_y_squared + apart_2_x*apart_2_x  # normal to the centres
+        normal_square = apart_2_y_squared + apart_2_x * apart_2_x  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)
-        one_by_normal_square = 1.0/normal_divisor
+        one_by_normal_square = 1.0 / normal_divisor
         # the square of the height over the centres
         height_square = (
-            0.25*(between_centres - arm_length_1_plus_arm_length_2)
-            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
+            0.25
+            * (between_centres - arm_length_1_plus_arm_length_2)
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * one_by_normal_square
         )
         # the rods do not meet
         require(status, height_square >= -arm_length_1_squared_times_rounding, Status.IMPOSSIBLE)
         # foot of the height, as a share
-        along_centres = 0.5*(normal_divisor + part_of_along_centres)*one_by_normal_square
-        foot_x = along_centres*apart_2_x
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        foot_y = along_centres*apart_2_y
-        y = foot_y + rail_y_1 + apart_2_x*rise
+        along_centres = 0.5 * (normal_divisor + part_of_along_centres) * one_by_normal_square
+        foot_x = along_centres * apart_2_x
+        rise = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x - apart_2_y * rise
+        foot_y = along_centres * apart_2_y
+        y = foot_y + rail_y_1 + apart_2_x * rise
         span_1_x = x - tcp_offset_1  # rod 1
-        branch_carriage_1 = (span_1_x - a1)/arm_length_1
+        branch_carriage_1 = (span_1_x - a1) / arm_length_1
         span_2_x = tcp_offset_2 + x  # rod 2
-        branch_carriage_2 = (a2 - span_2_x)/arm_length_2
+        branch_carriage_2 = (a2 - span_2_x) / arm_length_2
         return (
-            (
-                (x, y, 0.0),
-                ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-                (branch_carriage_1, branch_carriage_2),
-            ),
-            status,
-        )
+            (x, y, 0.0),
+            ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            (branch_carriage_1, branch_carriage_2),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2 = signs
         k = self.constants
-        arm_length_1 = k.arm_length_1
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_2 = k.arm_length_2
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        machine_scale_times_plane = k.machine_scale_times_plane
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        arm_length_1, arm_length_1_squared_times_rounding = k.arm_length_1, k.arm_length_1_squared_times_rounding
+        arm_length_2, arm_length_2_squared_times_rounding = k.arm_length_2, k.arm_length_2_squared_times_rounding
+        machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
+        offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
+        rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         span_1_y = y - rail_y_1  # rod 1
-        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        # a1: quadratic in the rod 1 equation
+        root_square_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)
         # rod 1 cannot reach
         require(status, root_square_a1 >= -arm_length_1_squared_times_rounding, Status.UNREACHABLE)
         span_2_y = y - rail_y_2  # rod 2
-        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        # a2: quadratic in the rod 2 equation
+        root_square_a2 = (arm_length_2 + span_2_y) * (arm_length_2 - span_2_y)
         # rod 2 cannot reach
         require(status, root_square_a2 >= -arm_length_2_squared_times_rounding, Status.UNREACHABLE)
         span_1_x = x - tcp_offset_1  # rod 1
-        a1 = span_1_x - root(root_square_a1)*sigma_carriage_1
+        a1 = span_1_x - root(root_square_a1) * sigma_carriage_1
         pivot_1_x = a1 + tcp_offset_1  # rod 1
         rod_1_x = x - pivot_1_x
         span_2_x = tcp_offset_2 + x  # rod 2
-        a2 = span_2_x + root(root_square_a2)*sigma_carriage_2
+        a2 = span_2_x + root(root_square_a2) * sigma_carriage_2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         rod_2_x = x - pivot_2_x
-        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         require(status, type2_arms_aligned >= min_type2_margin, Status.UNREACHABLE)
         axis_a1 = a1 + offset_a1
@@ -147,10 +133,7 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
+        highest_a1, highest_a2, lowest_a1, lowest_a2 = k.highest_a1, k.highest_a2, k.lowest_a1, k.lowest_a2
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -159,35 +142,29 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
         k = self.constants
-        arm_length_1 = k.arm_length_1
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_2 = k.arm_length_2
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        machine_scale_times_plane = k.machine_scale_times_plane
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        arm_length_1, arm_length_1_squared_times_rounding = k.arm_length_1, k.arm_length_1_squared_times_rounding
+        arm_length_2, arm_length_2_squared_times_rounding = k.arm_length_2, k.arm_length_2_squared_times_rounding
+        machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
+        offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
+        rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         span_1_y = y - rail_y_1  # rod 1
-        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        # a1: quadratic in the rod 1 equation
+        root_square_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)
         # rod 1 cannot reach
         require(status, root_square_a1 >= -arm_length_1_squared_times_rounding, Status.UNREACHABLE)
         span_2_y = y - rail_y_2  # rod 2
-        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        # a2: quadratic in the rod 2 equation
+        root_square_a2 = (arm_length_2 + span_2_y) * (arm_length_2 - span_2_y)
         # rod 2 cannot reach
         require(status, root_square_a2 >= -arm_length_2_squared_times_rounding, Status.UNREACHABLE)
         span_1_x = x - tcp_offset_1  # rod 1
@@ -198,7 +175,9 @@ class ArrayPrograms(Programs):
         a2_right = span_2_x + root(root_square_a2)
         pivot_2_x_right = a2_right - tcp_offset_2  # rod 2
         rod_2_x_right = x - pivot_2_x_right
-        type2_arms_aligned_left_right = part_of_type2_arms_aligned*(rod_1_x_left*span_2_y - rod_2_x_right*span_1_y)
+        type2_arms_aligned_left_right = part_of_type2_arms_aligned * (
+            rod_1_x_left * span_2_y - rod_2_x_right * span_1_y
+        )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0, 3)
         axis_a1_left = a1_left + offset_a1
@@ -206,18 +185,22 @@ class ArrayPrograms(Programs):
         a2_left = span_2_x - root(root_square_a2)
         pivot_2_x_left = a2_left - tcp_offset_2  # rod 2
         rod_2_x_left = x - pivot_2_x_left
-        type2_arms_aligned_left_left = part_of_type2_arms_aligned*(rod_1_x_left*span_2_y - rod_2_x_left*span_1_y)
+        type2_arms_aligned_left_left = part_of_type2_arms_aligned * (rod_1_x_left * span_2_y - rod_2_x_left * span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0, 3)
         axis_a2_left = a2_left + offset_a2
         a1_right = span_1_x + root(root_square_a1)
         pivot_1_x_right = a1_right + tcp_offset_1  # rod 1
         rod_1_x_right = x - pivot_1_x_right
-        type2_arms_aligned_right_right = part_of_type2_arms_aligned*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)
+        type2_arms_aligned_right_right = part_of_type2_arms_aligned * (
+            rod_1_x_right * span_2_y - rod_2_x_right * span_1_y
+        )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0, 3)
         axis_a1_right = a1_right + offset_a1
-        type2_arms_aligned_right_left = part_of_type2_arms_aligned*(rod_1_x_right*span_2_y - rod_2_x_left*span_1_y)
+        type2_arms_aligned_right_left = part_of_type2_arms_aligned * (
+            rod_1_x_right * span_2_y - rod_2_x_left * span_1_y
+        )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0, 3)
         status_left_right = refused(status, refusal_left_right)

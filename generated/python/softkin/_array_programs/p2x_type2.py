@@ -5,19 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import (
-    Codes,
-    Programs,
-    Reals,
-    Rotation,
-    Signs,
-    Turns,
-    Vector,
-    absolute,
-    passed,
-    require,
-    root,
-)
+from softkin._array import Codes, Programs, Reals, Rotation, Signs, Turns, Vector, absolute, passed, require, root
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -35,56 +23,47 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        arm_length = k.arm_length
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        tcp_link_distance = k.tcp_link_distance
+        arm_length, arm_length_squared_times_rounding = k.arm_length, k.arm_length_squared_times_rounding
+        assembly_sign, machine_scale_times_rounding = k.assembly_sign, k.machine_scale_times_rounding
+        offset_a1, offset_a2, tcp_link_distance = k.offset_a1, k.offset_a2, k.tcp_link_distance
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1
+        pivot_1_x = -0.5 * (a1 + tcp_link_distance - a2)  # rod 1
         # the mirror that the machine does not have
         require(status, pivot_1_x >= -machine_scale_times_rounding, Status.IMPOSSIBLE)
-        root_square_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # y: quadratic in the rod 1 equation
+        root_square_y = (arm_length + pivot_1_x) * (arm_length - pivot_1_x)  # y: quadratic in the rod 1 equation
         # rod 1 cannot reach
         require(status, root_square_y >= -arm_length_squared_times_rounding, Status.IMPOSSIBLE)
-        x = 0.5*(a1 + a2)  # x: affine in the x equation
-        y = root(root_square_y)*assembly_sign
+        x = 0.5 * (a1 + a2)  # x: affine in the x equation
+        y = root(root_square_y) * assembly_sign
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        arm_length = k.arm_length
-        assembly_sign_by_arm_length = k.assembly_sign_by_arm_length
-        machine_scale_times_plane = k.machine_scale_times_plane
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_constant = k.part_of_constant
-        span_1_x = k.span_1_x
+        arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
+        machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
+        offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        root_square_a2 = (arm_length + y)*(arm_length - y)  # a2: quadratic in the rod 1 (through x) equation
+        root_square_a2 = (arm_length + y) * (arm_length - y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
         require(status, root_square_a2 >= -part_of_constant, Status.UNREACHABLE)
-        type2_flat = assembly_sign_by_arm_length*y
+        type2_flat = assembly_sign_by_arm_length * y
         # flat: the other assembly mode, or too near to losing the plate
         require(status, type2_flat >= min_type2_margin, Status.UNREACHABLE)
         middle_a2 = span_1_x + x
         a2 = middle_a2 + root(root_square_a2)
-        a1 = 2.0*x - a2  # a1: affine in the x equation
+        a1 = 2.0 * x - a2  # a1: affine in the x equation
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2), status
@@ -93,10 +72,7 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
+        highest_a1, highest_a2, lowest_a1, lowest_a2 = k.highest_a1, k.highest_a2, k.lowest_a1, k.lowest_a2
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)

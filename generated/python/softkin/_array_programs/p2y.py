@@ -23,26 +23,23 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        x = 0.5*(a1 - a2)
-        y = 0.5*(a1 + a2)
+        x = 0.5 * (a1 - a2)
+        y = 0.5 * (a1 + a2)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        machine_scale_times_plane = k.machine_scale_times_plane
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        machine_scale_times_plane, offset_a1, offset_a2 = k.machine_scale_times_plane, k.offset_a1, k.offset_a2
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
@@ -58,16 +55,9 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        highest_a1, highest_a2, highest_x, highest_y = k.highest_a1, k.highest_a2, k.highest_x, k.highest_y
+        lowest_a1, lowest_a2, lowest_x, lowest_y = k.lowest_a1, k.lowest_a2, k.lowest_x, k.lowest_y
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -75,10 +65,10 @@ class ArrayPrograms(Programs):
         require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        value_x = 0.5*(a1 - a2)  # X of the carriage
+        value_x = 0.5 * (a1 - a2)  # X of the carriage
         # limits of X of the carriage
         require(status, (value_x >= lowest_x) & (value_x <= highest_x), Status.UNREACHABLE)
-        value_y = 0.5*(a1 + a2)  # Y of the carriage
+        value_y = 0.5 * (a1 + a2)  # Y of the carriage
         # limits of Y of the carriage
         require(status, (value_y >= lowest_y) & (value_y <= highest_y), Status.UNREACHABLE)
         return status

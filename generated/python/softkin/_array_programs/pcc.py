@@ -45,26 +45,23 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        x = link_length_1*cos_a1 + link_length_2*cos_a2  # x: affine in the x equation
+        x = link_length_1 * cos_a1 + link_length_2 * cos_a2  # x: affine in the x equation
         sin_a1 = sin(a1)
         sin_a2 = sin(a2)
-        y = link_length_1*sin_a1 + link_length_2*sin_a2  # y: affine in the y equation
+        y = link_length_1 * sin_a1 + link_length_2 * sin_a2  # y: affine in the y equation
         sin_a2_from_a1 = -sin(a1 - a2)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (sin_a2_from_a1,)), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -72,60 +69,55 @@ class ArrayPrograms(Programs):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        scale_a2_from_a1_squared_times_rounding = k.scale_a2_from_a1_squared_times_rounding
-        single_a1 = k.single_a1
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        scale_a2_from_a1_squared_times_rounding, single_a1 = k.scale_a2_from_a1_squared_times_rounding, k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x * x + y * y)
         # 1 - cosine, times the scale
-        one_less_cos_a2_from_a1 = (
-            (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
+            link_length_1_plus_link_length_2 - reach
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_from_a1 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
+            link_length_1_minus_link_length_2 + reach
         )
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
         require(status, sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding, Status.UNREACHABLE)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
-        sin_a2_from_a1 = 2.0*root(sine_square_a2_from_a1)*sigma_elbow/sum_a2_from_a1
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / sum_a2_from_a1
+        sin_a2_from_a1 = 2.0 * root(sine_square_a2_from_a1) * sigma_elbow / sum_a2_from_a1
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
             direction_y_a1 = sin(free_a1)
             return (direction_x_a1, direction_y_a1)
 
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
-        arm_across_a1 = link_length_2*sin_a2_from_a1
+        arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
+        arm_across_a1 = link_length_2 * sin_a2_from_a1
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1 = arm_across_a1*y + arm_along_a1*x
-        direction_y_a1 = arm_along_a1*y - arm_across_a1*x
+        direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+        direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
@@ -134,92 +126,81 @@ class ArrayPrograms(Programs):
         )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        axis_a1 = nearest_period(offset_a1 + angle_a1 / DEGREE, near_a1)  # A1: its turn
         angle_a2_from_a1 = atan2(sin_a2_from_a1, cos_a2_from_a1)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # a2: what the sum a2_from_a1 leaves; A2: its turn
-        axis_a2 = nearest_period(offset_a2 + (angle_a1 + angle_a2_from_a1)/DEGREE, near_a2)
+        axis_a2 = nearest_period(offset_a2 + (angle_a1 + angle_a2_from_a1) / DEGREE, near_a2)
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_elbow = k.highest_elbow
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_elbow = k.lowest_elbow
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        highest_a1, highest_a2, highest_elbow, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_elbow, k.lowest_a1
+        lowest_a2, lowest_elbow, offset_a1, offset_a2 = k.lowest_a2, k.lowest_elbow, k.offset_a1, k.offset_a2
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
         # limits of A2
         require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
-        a1 = DEGREE*(axis_a1 - offset_a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
-        value_elbow = (a2 - a1)/DEGREE  # the outer arm relative to the inner arm
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        value_elbow = (a2 - a1) / DEGREE  # the outer arm relative to the inner arm
         # limits of the outer arm relative to the inner arm
         require(status, (value_elbow >= lowest_elbow) & (value_elbow <= highest_elbow), Status.UNREACHABLE)
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        scale_a2_from_a1_squared_times_rounding = k.scale_a2_from_a1_squared_times_rounding
-        single_a1 = k.single_a1
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        scale_a2_from_a1_squared_times_rounding, single_a1 = k.scale_a2_from_a1_squared_times_rounding, k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x * x + y * y)
         # 1 - cosine, times the scale
-        one_less_cos_a2_from_a1 = (
-            (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
+            link_length_1_plus_link_length_2 - reach
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_from_a1 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
+            link_length_1_minus_link_length_2 + reach
         )
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
         require(status, sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding, Status.UNREACHABLE)
         # twice the scale, with the rounding of its parts
         both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
-        sin_a2_from_a1_right = 2.0*root(sine_square_a2_from_a1)/sum_a2_from_a1
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / sum_a2_from_a1
+        sin_a2_from_a1_right = 2.0 * root(sine_square_a2_from_a1) / sum_a2_from_a1
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             # a1: linear pair in the x and y equations; its reference where it is free
             direction_x_a1_right = cos(free_a1)
             direction_y_a1_right = sin(free_a1)
@@ -228,14 +209,14 @@ class ArrayPrograms(Programs):
             direction_y_a1_left = direction_y_a1_right
             return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
 
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
-        arm_across_a1_right = link_length_2*sin_a2_from_a1_right
+        arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
+        arm_across_a1_right = link_length_2 * sin_a2_from_a1_right
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
-        direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
+        direction_x_a1_right = arm_across_a1_right * y + arm_along_a1 * x
+        direction_y_a1_right = arm_along_a1 * y - arm_across_a1_right * x
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
-        direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
+        direction_x_a1_left = arm_along_a1 * x - arm_across_a1_right * y
+        direction_y_a1_left = arm_across_a1_right * x + arm_along_a1 * y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
             reach > machine_scale_times_free_angle,
             (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
@@ -244,19 +225,16 @@ class ArrayPrograms(Programs):
         )
         angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: its turn
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        axis_a1_right = nearest_period(offset_a1 + angle_a1_right / DEGREE, near_a1)  # A1: its turn
         angle_a2_from_a1_right = atan2(sin_a2_from_a1_right, cos_a2_from_a1)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # a2: what the sum a2_from_a1 leaves; A2: its turn
-        axis_a2_right = nearest_period(offset_a2 + (angle_a1_right + angle_a2_from_a1_right)/DEGREE, near_a2)
+        axis_a2_right = nearest_period(offset_a2 + (angle_a1_right + angle_a2_from_a1_right) / DEGREE, near_a2)
         angle_a1_left = atan2(direction_y_a1_left, direction_x_a1_left)
-        axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
+        axis_a1_left = nearest_period(offset_a1 + angle_a1_left / DEGREE, near_a1)  # A1: its turn
         angle_a2_from_a1_left = atan2(-sin_a2_from_a1_right, cos_a2_from_a1)
         # a2: what the sum a2_from_a1 leaves; A2: its turn
-        axis_a2_left = nearest_period(offset_a2 + (angle_a1_left + angle_a2_from_a1_left)/DEGREE, near_a2)
-        return (
-            ((axis_a1_right, axis_a2_right), status),
-            ((axis_a1_left, axis_a2_left), status),
-        )
+        axis_a2_left = nearest_period(offset_a2 + (angle_a1_left + angle_a2_from_a1_left) / DEGREE, near_a2)
+        return (((axis_a1_right, axis_a2_right), status), ((axis_a1_left, axis_a2_left), status))

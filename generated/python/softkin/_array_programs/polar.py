@@ -43,23 +43,22 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_c, axis_r = axes
         k = self.constants
-        offset_c = k.offset_c
-        offset_r = k.offset_r
+        offset_c, offset_r = k.offset_c, k.offset_r
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_c) <= 1e9) & (absolute(axis_r) <= 1e9), Status.BAD_INPUT)
         r = axis_r - offset_r
         # R where the machine has no pose
         require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
-        c = DEGREE*(axis_c - offset_c)
+        c = DEGREE * (axis_c - offset_c)
         cos_c = cos(c)
-        x = r*cos_c
+        x = r * cos_c
         sin_c = sin(c)
-        y = r*sin_c
+        y = r * sin_c
         return ((x, y, 0.0), ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -67,11 +66,8 @@ class ArrayPrograms(Programs):
         ref_c, _ = reference
         k = self.constants
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_c = k.mid_c
-        offset_c = k.offset_c
-        offset_r = k.offset_r
-        single_c = k.single_c
+        machine_scale_times_plane, mid_c, offset_c = k.machine_scale_times_plane, k.mid_c, k.offset_c
+        offset_r, single_c = k.offset_r, k.single_c
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -81,10 +77,10 @@ class ArrayPrograms(Programs):
         )
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
-        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        radius_c = sqrt(x * x + y * y)  # c: direction and distance of a point
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
-            free_c = (ref_c - offset_c)*DEGREE
+            free_c = (ref_c - offset_c) * DEGREE
             direction_x_c = cos(free_c)  # its reference where it is free
             direction_y_c = sin(free_c)
             return (direction_x_c, direction_y_c)
@@ -92,13 +88,10 @@ class ArrayPrograms(Programs):
         direction_x_c = x  # its reference where it is free
         direction_y_c = y
         direction_x_c, direction_y_c = elsewhere(
-            radius_c > machine_scale_times_free_angle,
-            (direction_x_c, direction_y_c),
-            elsewhere_direction_x_c,
-            (ref_c,),
+            radius_c > machine_scale_times_free_angle, (direction_x_c, direction_y_c), elsewhere_direction_x_c, (ref_c,)
         )
         open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
-        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
+        near_c = select(turn_c != 0, 360.0 * select(turn_c > 0, turn_c - 1, turn_c), open_c)
         axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
         axis_r = offset_r + radius_c
         return (axis_c, axis_r), status
@@ -107,10 +100,7 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_c, axis_r = axes
         k = self.constants
-        highest_c = k.highest_c
-        highest_r = k.highest_r
-        lowest_c = k.lowest_c
-        lowest_r = k.lowest_r
+        highest_c, highest_r, lowest_c, lowest_r = k.highest_c, k.highest_r, k.lowest_c, k.lowest_r
         status = passed(axes)
         # limits of C
         require(status, (axis_c >= lowest_c) & (axis_c <= highest_c), Status.UNREACHABLE)

@@ -43,41 +43,33 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_c, axis_r, axis_z = axes
         k = self.constants
-        offset_c = k.offset_c
-        offset_r = k.offset_r
-        offset_z = k.offset_z
+        offset_c, offset_r, offset_z = k.offset_c, k.offset_r, k.offset_z
         status = passed(axes)
         # numbers of reasonable size
         require(
-            status,
-            (absolute(axis_c) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_z) <= 1e9),
-            Status.BAD_INPUT,
+            status, (absolute(axis_c) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_z) <= 1e9), Status.BAD_INPUT
         )
         r = axis_r - offset_r
         # R where the machine has no pose
         require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
-        c = DEGREE*(axis_c - offset_c)
+        c = DEGREE * (axis_c - offset_c)
         cos_c = cos(c)
-        x = r*cos_c
+        x = r * cos_c
         sin_c = sin(c)
-        y = r*sin_c
+        y = r * sin_c
         joint_z = axis_z - offset_z
         return ((x, y, joint_z), ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (turn_c,) = turns
         ref_c, _, _ = reference
         k = self.constants
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_c = k.mid_c
-        offset_c = k.offset_c
-        offset_r = k.offset_r
-        offset_z = k.offset_z
-        single_c = k.single_c
+        machine_scale_times_free_angle, mid_c, offset_c = k.machine_scale_times_free_angle, k.mid_c, k.offset_c
+        offset_r, offset_z, single_c = k.offset_r, k.offset_z, k.single_c
         status = passed(position)
         # numbers of reasonable size
         require(
@@ -85,10 +77,10 @@ class ArrayPrograms(Programs):
             (absolute(ref_c) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        radius_c = sqrt(x * x + y * y)  # c: direction and distance of a point
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
-            free_c = (ref_c - offset_c)*DEGREE
+            free_c = (ref_c - offset_c) * DEGREE
             direction_x_c = cos(free_c)  # its reference where it is free
             direction_y_c = sin(free_c)
             return (direction_x_c, direction_y_c)
@@ -96,13 +88,10 @@ class ArrayPrograms(Programs):
         direction_x_c = x  # its reference where it is free
         direction_y_c = y
         direction_x_c, direction_y_c = elsewhere(
-            radius_c > machine_scale_times_free_angle,
-            (direction_x_c, direction_y_c),
-            elsewhere_direction_x_c,
-            (ref_c,),
+            radius_c > machine_scale_times_free_angle, (direction_x_c, direction_y_c), elsewhere_direction_x_c, (ref_c,)
         )
         open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
-        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
+        near_c = select(turn_c != 0, 360.0 * select(turn_c > 0, turn_c - 1, turn_c), open_c)
         axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
         axis_r = offset_r + radius_c
         axis_z = offset_z + z
@@ -112,12 +101,8 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_c, axis_r, axis_z = axes
         k = self.constants
-        highest_c = k.highest_c
-        highest_r = k.highest_r
-        highest_z = k.highest_z
-        lowest_c = k.lowest_c
-        lowest_r = k.lowest_r
-        lowest_z = k.lowest_z
+        highest_c, highest_r, highest_z, lowest_c = k.highest_c, k.highest_r, k.highest_z, k.lowest_c
+        lowest_r, lowest_z = k.lowest_r, k.lowest_z
         status = passed(axes)
         # limits of C
         require(status, (axis_c >= lowest_c) & (axis_c <= highest_c), Status.UNREACHABLE)

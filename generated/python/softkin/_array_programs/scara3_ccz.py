@@ -45,10 +45,7 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
         offset_a3 = k.offset_a3
         status = passed(axes)
         # numbers of reasonable size
@@ -57,21 +54,21 @@ class ArrayPrograms(Programs):
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
             Status.BAD_INPUT,
         )
-        a1 = DEGREE*(axis_a1 - offset_a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         a1_plus_a2 = a1 + a2
         cos_a12 = cos(a1_plus_a2)
         cos_a1 = cos(a1)
-        x = link_length_1*cos_a1 + link_length_2*cos_a12
+        x = link_length_1 * cos_a1 + link_length_2 * cos_a12
         sin_a12 = sin(a1_plus_a2)
         sin_a1 = sin(a1)
-        y = link_length_1*sin_a1 + link_length_2*sin_a12
+        y = link_length_1 * sin_a1 + link_length_2 * sin_a12
         a3 = axis_a3 - offset_a3
         sin_a2 = sin(a2)
         return ((x, y, a3), ((cos_a12, -sin_a12, 0.0), (sin_a12, cos_a12, 0.0), (0.0, 0.0, 1.0)), (sin_a2,)), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -79,53 +76,47 @@ class ArrayPrograms(Programs):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2, _ = reference
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
-        single_a1 = k.single_a1
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        scale_a2_squared_times_rounding, single_a1 = k.scale_a2_squared_times_rounding, k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x * x + y * y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/sum_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_a2 = 2.0 * root(sine_square_a2) * sigma_elbow / sum_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
             direction_y_a1 = sin(free_a1)
             return (direction_x_a1, direction_y_a1)
 
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2
-        arm_across_a1 = link_length_2*sin_a2
+        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
+        arm_across_a1 = link_length_2 * sin_a2
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1 = arm_across_a1*y + arm_along_a1*x
-        direction_y_a1 = arm_along_a1*y - arm_across_a1*x
+        direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+        direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
@@ -133,10 +124,10 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(direction_y_a1, direction_x_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         axis_a3 = offset_a3 + z
         return (axis_a1, axis_a2, axis_a3), status
@@ -145,12 +136,8 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
+        highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
+        lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -161,51 +148,45 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2, _ = reference
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
-        single_a1 = k.single_a1
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        scale_a2_squared_times_rounding, single_a1 = k.scale_a2_squared_times_rounding, k.single_a1
         single_a2 = k.single_a2
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x * x + y * y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2_right = 2.0*root(sine_square_a2)/sum_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_a2_right = 2.0 * root(sine_square_a2) / sum_a2
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             # a1: linear pair in the x and y equations; its reference where it is free
             direction_x_a1_right = cos(free_a1)
             direction_y_a1_right = sin(free_a1)
@@ -214,14 +195,14 @@ class ArrayPrograms(Programs):
             direction_y_a1_left = direction_y_a1_right
             return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
 
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2
-        arm_across_a1_right = link_length_2*sin_a2_right
+        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
+        arm_across_a1_right = link_length_2 * sin_a2_right
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
-        direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
+        direction_x_a1_right = arm_across_a1_right * y + arm_along_a1 * x
+        direction_y_a1_right = arm_along_a1 * y - arm_across_a1_right * x
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
-        direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
+        direction_x_a1_left = arm_along_a1 * x - arm_across_a1_right * y
+        direction_y_a1_left = arm_across_a1_right * x + arm_along_a1 * y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
             reach > machine_scale_times_free_angle,
             (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
@@ -229,17 +210,14 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         # A1: its turn
         axis_a1_right = nearest_period(offset_a1 + degrees(direction_y_a1_right, direction_x_a1_right), near_a1)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2_right = nearest_period(offset_a2 + degrees(sin_a2_right, cos_a2), near_a2)  # A2: its turn
         axis_a3 = offset_a3 + z
         # A1: its turn
         axis_a1_left = nearest_period(offset_a1 + degrees(direction_y_a1_left, direction_x_a1_left), near_a1)
         axis_a2_left = nearest_period(offset_a2 + degrees(-sin_a2_right, cos_a2), near_a2)  # A2: its turn
-        return (
-            ((axis_a1_right, axis_a2_right, axis_a3), status),
-            ((axis_a1_left, axis_a2_left, axis_a3), status),
-        )
+        return (((axis_a1_right, axis_a2_right, axis_a3), status), ((axis_a1_left, axis_a2_left, axis_a3), status))

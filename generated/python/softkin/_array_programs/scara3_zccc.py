@@ -45,45 +45,37 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
+        link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         status = passed(axes)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9)
-            ),
+            (absolute(axis_a1) <= 1e9)
+            & (absolute(axis_a2) <= 1e9)
+            & (absolute(axis_a3) <= 1e9)
+            & (absolute(axis_a4) <= 1e9),
             Status.BAD_INPUT,
         )
-        a2 = DEGREE*(axis_a2 - offset_a2)
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a3 = DEGREE * (axis_a3 - offset_a3)
         a2_plus_a3 = a2 + a3
-        a4 = DEGREE*(axis_a4 - offset_a4)
+        a4 = DEGREE * (axis_a4 - offset_a4)
         a2_plus_a3_plus_a4 = a2_plus_a3 + a4
         cos_a234 = cos(a2_plus_a3_plus_a4)
         cos_a2 = cos(a2)
         cos_a23 = cos(a2_plus_a3)
-        x = link_length_1*cos_a2 + link_length_2*cos_a23 + link_length_3*cos_a234
+        x = link_length_1 * cos_a2 + link_length_2 * cos_a23 + link_length_3 * cos_a234
         sin_a234 = sin(a2_plus_a3_plus_a4)
         sin_a2 = sin(a2)
         sin_a23 = sin(a2_plus_a3)
-        y = link_length_1*sin_a2 + link_length_2*sin_a23 + link_length_3*sin_a234
+        y = link_length_1 * sin_a2 + link_length_2 * sin_a23 + link_length_3 * sin_a234
         a1 = axis_a1 - offset_a1
         sin_a3 = sin(a3)
-        return (
-            ((x, y, a1), ((cos_a234, -sin_a234, 0.0), (sin_a234, cos_a234, 0.0), (0.0, 0.0, 1.0)), (sin_a3,)),
-            status,
-        )
+        return ((x, y, a1), ((cos_a234, -sin_a234, 0.0), (sin_a234, cos_a234, 0.0), (0.0, 0.0, 1.0)), (sin_a3,)), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -92,68 +84,60 @@ class ArrayPrograms(Programs):
         turn_a2, turn_a3, turn_a4 = turns
         _, ref_a2, ref_a3, ref_a4 = reference
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        mid_a4 = k.mid_a4
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        scale_a3_squared_times_rounding = k.scale_a3_squared_times_rounding
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        single_a4 = k.single_a4
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        link_length_3, machine_scale_times_free_angle = k.link_length_3, k.machine_scale_times_free_angle
+        mid_a2, mid_a3, mid_a4, offset_a1, offset_a2 = k.mid_a2, k.mid_a3, k.mid_a4, k.offset_a1, k.offset_a2
+        offset_a3, offset_a4 = k.offset_a3, k.offset_a4
+        scale_a3_squared_times_rounding, single_a2 = k.scale_a3_squared_times_rounding, k.single_a2
+        single_a3, single_a4 = k.single_a3, k.single_a4
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9) & (absolute(ref_a4) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(ref_a4) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
-        cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
-        sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        cos_heading = heading_along / heading_divisor
+        wrist_x = x - link_length_3 * cos_heading  # what the unknown links must span
+        sin_heading = heading_across / heading_divisor
+        wrist_y = y - link_length_3 * sin_heading  # what the unknown links must span
+        reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         require(status, sine_square_a3 >= -scale_a3_squared_times_rounding, Status.UNREACHABLE)
         axis_a1 = offset_a1 + z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        sin_a3 = 2.0*root(sine_square_a3)*sigma_elbow/sum_a3
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) / sum_a3
+        sin_a3 = 2.0 * root(sine_square_a3) * sigma_elbow / sum_a3
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_a2 = cos(free_a2)  # a2: linear pair in the x and y equations; its reference where it is free
             direction_y_a2 = sin(free_a2)
             return (direction_x_a2, direction_y_a2)
 
-        arm_along_a2 = link_length_1 + link_length_2*cos_a3
-        arm_across_a2 = link_length_2*sin_a3
+        arm_along_a2 = link_length_1 + link_length_2 * cos_a3
+        arm_across_a2 = link_length_2 * sin_a3
         # a2: linear pair in the x and y equations; its reference where it is free
-        direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
-        direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
+        direction_x_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
+        direction_y_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
         direction_x_a2, direction_y_a2 = elsewhere(
             reach > machine_scale_times_free_angle,
             (direction_x_a2, direction_y_a2),
@@ -162,31 +146,25 @@ class ArrayPrograms(Programs):
         )
         angle_a2 = atan2(direction_y_a2, direction_x_a2)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(offset_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        axis_a2 = nearest_period(offset_a2 + angle_a2 / DEGREE, near_a2)  # A2: its turn
         angle_a3 = atan2(sin_a3, cos_a3)
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(offset_a3 + angle_a3/DEGREE, near_a3)  # A3: its turn
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        axis_a3 = nearest_period(offset_a3 + angle_a3 / DEGREE, near_a3)  # A3: its turn
         angle_heading = atan2(sin_heading, cos_heading)
         open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # a4: what the sum a234 leaves; A4: its turn
-        axis_a4 = nearest_period(offset_a4 + (angle_heading - angle_a2 - angle_a3)/DEGREE, near_a4)
+        axis_a4 = nearest_period(offset_a4 + (angle_heading - angle_a2 - angle_a3) / DEGREE, near_a4)
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        highest_a4 = k.highest_a4
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        lowest_a4 = k.lowest_a4
+        highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+        lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
         status = passed(axes)
         # limits of A2
         require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
@@ -199,7 +177,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -207,59 +185,51 @@ class ArrayPrograms(Programs):
         turn_a2, turn_a3, turn_a4 = turns
         _, ref_a2, ref_a3, ref_a4 = reference
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        mid_a4 = k.mid_a4
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        scale_a3_squared_times_rounding = k.scale_a3_squared_times_rounding
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        single_a4 = k.single_a4
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        link_length_3, machine_scale_times_free_angle = k.link_length_3, k.machine_scale_times_free_angle
+        mid_a2, mid_a3, mid_a4, offset_a1, offset_a2 = k.mid_a2, k.mid_a3, k.mid_a4, k.offset_a1, k.offset_a2
+        offset_a3, offset_a4 = k.offset_a3, k.offset_a4
+        scale_a3_squared_times_rounding, single_a2 = k.scale_a3_squared_times_rounding, k.single_a2
+        single_a3, single_a4 = k.single_a3, k.single_a4
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9) & (absolute(ref_a4) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(ref_a4) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
-        cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
-        sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        cos_heading = heading_along / heading_divisor
+        wrist_x = x - link_length_3 * cos_heading  # what the unknown links must span
+        sin_heading = heading_across / heading_divisor
+        wrist_y = y - link_length_3 * sin_heading  # what the unknown links must span
+        reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         require(status, sine_square_a3 >= -scale_a3_squared_times_rounding, Status.UNREACHABLE)
         axis_a1 = offset_a1 + z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        sin_a3_right = 2.0*root(sine_square_a3)/sum_a3
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) / sum_a3
+        sin_a3_right = 2.0 * root(sine_square_a3) / sum_a3
 
         def elsewhere_direction_x_a2_right(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             # a2: linear pair in the x and y equations; its reference where it is free
             direction_x_a2_right = cos(free_a2)
             direction_y_a2_right = sin(free_a2)
@@ -268,14 +238,14 @@ class ArrayPrograms(Programs):
             direction_y_a2_left = direction_y_a2_right
             return (direction_x_a2_right, direction_y_a2_right, direction_x_a2_left, direction_y_a2_left)
 
-        arm_along_a2 = link_length_1 + link_length_2*cos_a3
-        arm_across_a2_right = link_length_2*sin_a3_right
+        arm_along_a2 = link_length_1 + link_length_2 * cos_a3
+        arm_across_a2_right = link_length_2 * sin_a3_right
         # a2: linear pair in the x and y equations; its reference where it is free
-        direction_x_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
-        direction_y_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
+        direction_x_a2_right = arm_across_a2_right * wrist_y + arm_along_a2 * wrist_x
+        direction_y_a2_right = arm_along_a2 * wrist_y - arm_across_a2_right * wrist_x
         # a2: linear pair in the x and y equations; its reference where it is free
-        direction_x_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y
-        direction_y_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
+        direction_x_a2_left = arm_along_a2 * wrist_x - arm_across_a2_right * wrist_y
+        direction_y_a2_left = arm_across_a2_right * wrist_x + arm_along_a2 * wrist_y
         direction_x_a2_right, direction_y_a2_right, direction_x_a2_left, direction_y_a2_left = elsewhere(
             reach > machine_scale_times_free_angle,
             (direction_x_a2_right, direction_y_a2_right, direction_x_a2_left, direction_y_a2_left),
@@ -284,23 +254,23 @@ class ArrayPrograms(Programs):
         )
         angle_a2_right = atan2(direction_y_a2_right, direction_x_a2_right)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2_right = nearest_period(offset_a2 + angle_a2_right/DEGREE, near_a2)  # A2: its turn
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        axis_a2_right = nearest_period(offset_a2 + angle_a2_right / DEGREE, near_a2)  # A2: its turn
         angle_a3_right = atan2(sin_a3_right, cos_a3)
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3_right = nearest_period(offset_a3 + angle_a3_right/DEGREE, near_a3)  # A3: its turn
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        axis_a3_right = nearest_period(offset_a3 + angle_a3_right / DEGREE, near_a3)  # A3: its turn
         angle_heading = atan2(sin_heading, cos_heading)
         open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # a4: what the sum a234 leaves; A4: its turn
-        axis_a4_right = nearest_period(offset_a4 + (angle_heading - angle_a2_right - angle_a3_right)/DEGREE, near_a4)
+        axis_a4_right = nearest_period(offset_a4 + (angle_heading - angle_a2_right - angle_a3_right) / DEGREE, near_a4)
         angle_a2_left = atan2(direction_y_a2_left, direction_x_a2_left)
-        axis_a2_left = nearest_period(offset_a2 + angle_a2_left/DEGREE, near_a2)  # A2: its turn
+        axis_a2_left = nearest_period(offset_a2 + angle_a2_left / DEGREE, near_a2)  # A2: its turn
         angle_a3_left = atan2(-sin_a3_right, cos_a3)
-        axis_a3_left = nearest_period(offset_a3 + angle_a3_left/DEGREE, near_a3)  # A3: its turn
+        axis_a3_left = nearest_period(offset_a3 + angle_a3_left / DEGREE, near_a3)  # A3: its turn
         # a4: what the sum a234 leaves; A4: its turn
-        axis_a4_left = nearest_period(offset_a4 + (angle_heading - angle_a2_left - angle_a3_left)/DEGREE, near_a4)
+        axis_a4_left = nearest_period(offset_a4 + (angle_heading - angle_a2_left - angle_a3_left) / DEGREE, near_a4)
         return (
             ((axis_a1, axis_a2_right, axis_a3_right, axis_a4_right), status),
             ((axis_a1, axis_a2_left, axis_a3_left, axis_a4_left), status),

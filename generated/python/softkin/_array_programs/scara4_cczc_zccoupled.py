@@ -45,55 +45,46 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self.constants
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        part_of_constant = k.part_of_constant
-        part_of_z = k.part_of_z
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
+        offset_a3, offset_a4, part_of_constant, part_of_z = k.offset_a3, k.offset_a4, k.part_of_constant, k.part_of_z
         status = passed(axes)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9)
-            ),
+            (absolute(axis_a1) <= 1e9)
+            & (absolute(axis_a2) <= 1e9)
+            & (absolute(axis_a3) <= 1e9)
+            & (absolute(axis_a4) <= 1e9),
             Status.BAD_INPUT,
         )
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         a1_plus_a2 = a1 + a2
         cos_a12 = cos(a1_plus_a2)
-        x = link_length_1*cos_a1 + link_length_2*cos_a12
+        x = link_length_1 * cos_a1 + link_length_2 * cos_a12
         sin_a1 = sin(a1)
         sin_a12 = sin(a1_plus_a2)
-        y = link_length_1*sin_a1 + link_length_2*sin_a12
+        y = link_length_1 * sin_a1 + link_length_2 * sin_a12
         a3 = axis_a3 - offset_a3
-        a4 = DEGREE*(axis_a4 - offset_a4)
-        z = a3 + a4*part_of_z
+        a4 = DEGREE * (axis_a4 - offset_a4)
+        z = a3 + a4 * part_of_z
         a1_plus_a2_plus_a4 = a1_plus_a2 + a4
         cos_a124 = cos(a1_plus_a2_plus_a4)
         sin_a124 = sin(a1_plus_a2_plus_a4)
         sin_a2 = sin(a2)
         return (
+            (x, y, z),
             (
-                (x, y, z),
-                (
-                    (cos_a124, -part_of_constant*sin_a124, 0.0),
-                    (sin_a124, part_of_constant*cos_a124, 0.0),
-                    (0.0, 0.0, part_of_constant),
-                ),
-                (sin_a2,),
+                (cos_a124, -part_of_constant * sin_a124, 0.0),
+                (sin_a124, part_of_constant * cos_a124, 0.0),
+                (0.0, 0.0, part_of_constant),
             ),
-            status,
-        )
+            (sin_a2,),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -102,32 +93,24 @@ class ArrayPrograms(Programs):
         turn_a4, turn_a1, turn_a2 = turns
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self.constants
-        flange_down = k.flange_down
-        link_length_1 = k.link_length_1
+        flange_down, link_length_1 = k.flange_down, k.link_length_1
         link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a4 = k.mid_a4
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        part_of_z = k.part_of_z
-        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a4 = k.single_a4
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
+        offset_a4, part_of_z = k.offset_a4, k.part_of_z
+        scale_a2_squared_times_rounding, single_a1 = k.scale_a2_squared_times_rounding, k.single_a1
+        single_a2, single_a4 = k.single_a2, k.single_a4
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a4) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a4) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
 
@@ -139,38 +122,35 @@ class ArrayPrograms(Programs):
         heading_along = r11 - r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r12 + r21
         heading_along, heading_across = elsewhere(
-            flange_down,
-            (heading_along, heading_across),
-            elsewhere_heading_along,
-            (r11, r12, r21, r22),
+            flange_down, (heading_along, heading_across), elsewhere_heading_along, (r11, r12, r21, r22)
         )
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x * x + y * y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/sum_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_a2 = 2.0 * root(sine_square_a2) * sigma_elbow / sum_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
             direction_y_a1 = sin(free_a1)
             return (direction_x_a1, direction_y_a1)
 
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2
-        arm_across_a1 = link_length_2*sin_a2
+        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
+        arm_across_a1 = link_length_2 * sin_a2
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1 = arm_across_a1*y + arm_along_a1*x
-        direction_y_a1 = arm_along_a1*y - arm_across_a1*x
+        direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+        direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
@@ -179,19 +159,19 @@ class ArrayPrograms(Programs):
         )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        axis_a1 = nearest_period(offset_a1 + angle_a1 / DEGREE, near_a1)  # A1: its turn
         angle_a2 = atan2(sin_a2, cos_a2)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(offset_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        axis_a2 = nearest_period(offset_a2 + angle_a2 / DEGREE, near_a2)  # A2: its turn
         angle_heading = atan2(heading_across, heading_along)
         open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
-        axis_a4 = nearest_period(offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE, near_a4)
-        a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
-        a3 = z - a4*part_of_z  # a3: affine in the z equation
+        axis_a4 = nearest_period(offset_a4 + (angle_heading - angle_a1 - angle_a2) / DEGREE, near_a4)
+        a4 = DEGREE * (axis_a4 - offset_a4)  # A4: turns count from here on
+        a3 = z - a4 * part_of_z  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
 
@@ -199,14 +179,8 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        highest_a4 = k.highest_a4
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        lowest_a4 = k.lowest_a4
+        highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+        lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -219,7 +193,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -227,32 +201,24 @@ class ArrayPrograms(Programs):
         turn_a4, turn_a1, turn_a2 = turns
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self.constants
-        flange_down = k.flange_down
-        link_length_1 = k.link_length_1
+        flange_down, link_length_1 = k.flange_down, k.link_length_1
         link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a4 = k.mid_a4
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        part_of_z = k.part_of_z
-        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a4 = k.single_a4
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
+        offset_a4, part_of_z = k.offset_a4, k.part_of_z
+        scale_a2_squared_times_rounding, single_a1 = k.scale_a2_squared_times_rounding, k.single_a1
+        single_a2, single_a4 = k.single_a2, k.single_a4
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a4) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a4) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
 
@@ -264,29 +230,26 @@ class ArrayPrograms(Programs):
         heading_along = r11 - r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r12 + r21
         heading_along, heading_across = elsewhere(
-            flange_down,
-            (heading_along, heading_across),
-            elsewhere_heading_along,
-            (r11, r12, r21, r22),
+            flange_down, (heading_along, heading_across), elsewhere_heading_along, (r11, r12, r21, r22)
         )
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        reach = sqrt(x*x + y*y)
+        reach = sqrt(x * x + y * y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2_right = 2.0*root(sine_square_a2)/sum_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_a2_right = 2.0 * root(sine_square_a2) / sum_a2
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             # a1: linear pair in the x and y equations; its reference where it is free
             direction_x_a1_right = cos(free_a1)
             direction_y_a1_right = sin(free_a1)
@@ -295,14 +258,14 @@ class ArrayPrograms(Programs):
             direction_y_a1_left = direction_y_a1_right
             return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
 
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2
-        arm_across_a1_right = link_length_2*sin_a2_right
+        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
+        arm_across_a1_right = link_length_2 * sin_a2_right
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
-        direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
+        direction_x_a1_right = arm_across_a1_right * y + arm_along_a1 * x
+        direction_y_a1_right = arm_along_a1 * y - arm_across_a1_right * x
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
-        direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
+        direction_x_a1_left = arm_along_a1 * x - arm_across_a1_right * y
+        direction_y_a1_left = arm_across_a1_right * x + arm_along_a1 * y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
             reach > machine_scale_times_free_angle,
             (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
@@ -311,28 +274,28 @@ class ArrayPrograms(Programs):
         )
         angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: its turn
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        axis_a1_right = nearest_period(offset_a1 + angle_a1_right / DEGREE, near_a1)  # A1: its turn
         angle_a2_right = atan2(sin_a2_right, cos_a2)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2_right = nearest_period(offset_a2 + angle_a2_right/DEGREE, near_a2)  # A2: its turn
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        axis_a2_right = nearest_period(offset_a2 + angle_a2_right / DEGREE, near_a2)  # A2: its turn
         angle_heading = atan2(heading_across, heading_along)
         open_a4 = select(single_a4, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
-        axis_a4_right = nearest_period(offset_a4 + (angle_heading - angle_a1_right - angle_a2_right)/DEGREE, near_a4)
-        a4_right = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        a3_right = z - a4_right*part_of_z  # a3: affine in the z equation
+        axis_a4_right = nearest_period(offset_a4 + (angle_heading - angle_a1_right - angle_a2_right) / DEGREE, near_a4)
+        a4_right = DEGREE * (axis_a4_right - offset_a4)  # A4: turns count from here on
+        a3_right = z - a4_right * part_of_z  # a3: affine in the z equation
         axis_a3_right = a3_right + offset_a3
         angle_a1_left = atan2(direction_y_a1_left, direction_x_a1_left)
-        axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
+        axis_a1_left = nearest_period(offset_a1 + angle_a1_left / DEGREE, near_a1)  # A1: its turn
         angle_a2_left = atan2(-sin_a2_right, cos_a2)
-        axis_a2_left = nearest_period(offset_a2 + angle_a2_left/DEGREE, near_a2)  # A2: its turn
+        axis_a2_left = nearest_period(offset_a2 + angle_a2_left / DEGREE, near_a2)  # A2: its turn
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
-        axis_a4_left = nearest_period(offset_a4 + (angle_heading - angle_a1_left - angle_a2_left)/DEGREE, near_a4)
-        a4_left = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3_left = z - a4_left*part_of_z  # a3: affine in the z equation
+        axis_a4_left = nearest_period(offset_a4 + (angle_heading - angle_a1_left - angle_a2_left) / DEGREE, near_a4)
+        a4_left = DEGREE * (axis_a4_left - offset_a4)  # A4: turns count from here on
+        a3_left = z - a4_left * part_of_z  # a3: affine in the z equation
         axis_a3_left = a3_left + offset_a3
         return (
             ((axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right), status),

@@ -46,15 +46,9 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        coupling_12 = k.coupling_12
-        coupling_13 = k.coupling_13
-        coupling_23 = k.coupling_23
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
+        coupling_12, coupling_13, coupling_23 = k.coupling_12, k.coupling_13, k.coupling_23
+        link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -62,29 +56,30 @@ class ArrayPrograms(Programs):
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
             Status.BAD_INPUT,
         )
-        a1 = DEGREE*(axis_a1 - offset_a1)
-        motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        a2 = motor_a2 + a1*coupling_12
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        motor_a2 = DEGREE * (axis_a2 - offset_a2)
+        a2 = motor_a2 + a1 * coupling_12
         a1_plus_a2 = a1 + a2
-        motor_a3 = DEGREE*(axis_a3 - offset_a3)
-        a3 = motor_a3 + a1*coupling_13 + coupling_23*motor_a2
+        motor_a3 = DEGREE * (axis_a3 - offset_a3)
+        a3 = motor_a3 + a1 * coupling_13 + coupling_23 * motor_a2
         a1_plus_a2_plus_a3 = a1_plus_a2 + a3
         cos_a123 = cos(a1_plus_a2_plus_a3)
         cos_a1 = cos(a1)
         cos_a12 = cos(a1_plus_a2)
-        x = link_length_1*cos_a1 + link_length_2*cos_a12 + link_length_3*cos_a123
+        x = link_length_1 * cos_a1 + link_length_2 * cos_a12 + link_length_3 * cos_a123
         sin_a123 = sin(a1_plus_a2_plus_a3)
         sin_a1 = sin(a1)
         sin_a12 = sin(a1_plus_a2)
-        y = link_length_1*sin_a1 + link_length_2*sin_a12 + link_length_3*sin_a123
+        y = link_length_1 * sin_a1 + link_length_2 * sin_a12 + link_length_3 * sin_a123
         sin_a2 = sin(a2)
         return (
-            ((x, y, 0.0), ((cos_a123, -sin_a123, 0.0), (sin_a123, cos_a123, 0.0), (0.0, 0.0, 1.0)), (sin_a2,)),
-            status,
-        )
+            (x, y, 0.0),
+            ((cos_a123, -sin_a123, 0.0), (sin_a123, cos_a123, 0.0), (0.0, 0.0, 1.0)),
+            (sin_a2,),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -93,73 +88,62 @@ class ArrayPrograms(Programs):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self.constants
-        coupling_12 = k.coupling_12
-        coupling_13 = k.coupling_13
-        coupling_23 = k.coupling_23
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_open_a2 = k.part_of_open_a2
-        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
+        coupling_12, coupling_13, coupling_23 = k.coupling_12, k.coupling_13, k.coupling_23
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        link_length_3, machine_scale_times_free_angle = k.link_length_3, k.machine_scale_times_free_angle
+        machine_scale_times_plane, mid_a1, mid_a2, mid_a3 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2, k.mid_a3
+        offset_a1, offset_a2, offset_a3, part_of_open_a2 = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_open_a2
+        scale_a2_squared_times_rounding, single_a1 = k.scale_a2_squared_times_rounding, k.single_a1
+        single_a2, single_a3 = k.single_a2, k.single_a3
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
-        cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
-        sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        cos_heading = heading_along / heading_divisor
+        wrist_x = x - link_length_3 * cos_heading  # what the unknown links must span
+        sin_heading = heading_across / heading_divisor
+        wrist_y = y - link_length_3 * sin_heading  # what the unknown links must span
+        reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/sum_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_a2 = 2.0 * root(sine_square_a2) * sigma_elbow / sum_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
             direction_y_a1 = sin(free_a1)
             return (direction_x_a1, direction_y_a1)
 
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2
-        arm_across_a1 = link_length_2*sin_a2
+        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
+        arm_across_a1 = link_length_2 * sin_a2
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
-        direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
+        direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
+        direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > machine_scale_times_free_angle,
             (direction_x_a1, direction_y_a1),
@@ -168,85 +152,65 @@ class ArrayPrograms(Programs):
         )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        axis_a1 = nearest_period(offset_a1 + angle_a1 / DEGREE, near_a1)  # A1: its turn
         angle_a2 = atan2(sin_a2, cos_a2)
-        motor_a1 = DEGREE*(axis_a1 - offset_a1)
-        part_of_axis_a2 = offset_a2 - motor_a1*part_of_open_a2
+        motor_a1 = DEGREE * (axis_a1 - offset_a1)
+        part_of_axis_a2 = offset_a2 - motor_a1 * part_of_open_a2
 
         def elsewhere_near_a2(part_of_axis_a2: Real, ref_a1: Real, ref_a2: Real, single_a2: Truth) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            free_a2 = ref_motor_a2 + coupling_12*free_a1
-            open_a2 = select(single_a2, mid_a2, part_of_axis_a2 + free_a2/DEGREE)  # A2: where its turn is open
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2) * DEGREE
+            free_a2 = ref_motor_a2 + coupling_12 * free_a1
+            open_a2 = select(single_a2, mid_a2, part_of_axis_a2 + free_a2 / DEGREE)  # A2: where its turn is open
             near_a2 = open_a2
             return (near_a2,)
 
-        near_a2 = 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2)
+        near_a2 = 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2)
         (near_a2,) = elsewhere(
-            turn_a2 != 0,
-            (near_a2,),
-            elsewhere_near_a2,
-            (part_of_axis_a2, ref_a1, ref_a2, single_a2),
+            turn_a2 != 0, (near_a2,), elsewhere_near_a2, (part_of_axis_a2, ref_a1, ref_a2, single_a2)
         )
-        axis_a2 = nearest_period(part_of_axis_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(part_of_axis_a2 + angle_a2 / DEGREE, near_a2)  # A2: its turn
         angle_heading = atan2(sin_heading, cos_heading)
-        motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        part_of_axis_a3 = -coupling_13*motor_a1 - coupling_23*motor_a2
+        motor_a2 = DEGREE * (axis_a2 - offset_a2)
+        part_of_axis_a3 = -coupling_13 * motor_a1 - coupling_23 * motor_a2
 
         def elsewhere_near_a3(
-            part_of_axis_a3: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real, single_a3: Truth,
+            part_of_axis_a3: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real, single_a3: Truth
         ) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2) * DEGREE
 
             def elsewhere_open_a3(free_a1: Real, part_of_axis_a3: Real, ref_a3: Real, ref_motor_a2: Real) -> Reals:
-                ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
-                free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3)/DEGREE  # A3: where its turn is open
+                ref_motor_a3 = (ref_a3 - offset_a3) * DEGREE
+                free_a3 = ref_motor_a3 + coupling_13 * free_a1 + coupling_23 * ref_motor_a2
+                open_a3 = offset_a3 + (free_a3 + part_of_axis_a3) / DEGREE  # A3: where its turn is open
                 return (open_a3,)
 
             open_a3 = mid_a3  # A3: where its turn is open
             (open_a3,) = elsewhere(
-                single_a3,
-                (open_a3,),
-                elsewhere_open_a3,
-                (free_a1, part_of_axis_a3, ref_a3, ref_motor_a2),
+                single_a3, (open_a3,), elsewhere_open_a3, (free_a1, part_of_axis_a3, ref_a3, ref_motor_a2)
             )
             near_a3 = open_a3
             return (near_a3,)
 
-        near_a3 = 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3)
+        near_a3 = 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3)
         (near_a3,) = elsewhere(
-            turn_a3 != 0,
-            (near_a3,),
-            elsewhere_near_a3,
-            (part_of_axis_a3, ref_a1, ref_a2, ref_a3, single_a3),
+            turn_a3 != 0, (near_a3,), elsewhere_near_a3, (part_of_axis_a3, ref_a1, ref_a2, ref_a3, single_a3)
         )
         # a3: what the sum a123 leaves; A3: its turn
-        axis_a3 = nearest_period(offset_a3 + (angle_heading + part_of_axis_a3 - angle_a1 - angle_a2)/DEGREE, near_a3)
+        axis_a3 = nearest_period(offset_a3 + (angle_heading + part_of_axis_a3 - angle_a1 - angle_a2) / DEGREE, near_a3)
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        coupling_12 = k.coupling_12
-        coupling_13 = k.coupling_13
-        coupling_23 = k.coupling_23
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        highest_joint_2 = k.highest_joint_2
-        highest_joint_3 = k.highest_joint_3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        lowest_joint_2 = k.lowest_joint_2
-        lowest_joint_3 = k.lowest_joint_3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
+        coupling_12, coupling_13, coupling_23, highest_a1 = k.coupling_12, k.coupling_13, k.coupling_23, k.highest_a1
+        highest_a2, highest_a3, highest_joint_2 = k.highest_a2, k.highest_a3, k.highest_joint_2
+        highest_joint_3, lowest_a1, lowest_a2, lowest_a3 = k.highest_joint_3, k.lowest_a1, k.lowest_a2, k.lowest_a3
+        lowest_joint_2, lowest_joint_3, offset_a1 = k.lowest_joint_2, k.lowest_joint_3, k.offset_a1
+        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -254,21 +218,21 @@ class ArrayPrograms(Programs):
         require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
         # limits of A3
         require(status, (axis_a3 >= lowest_a3) & (axis_a3 <= highest_a3), Status.UNREACHABLE)
-        a1 = DEGREE*(axis_a1 - offset_a1)
-        motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        a2 = motor_a2 + a1*coupling_12
-        value_joint_2 = a2/DEGREE  # joint 2
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        motor_a2 = DEGREE * (axis_a2 - offset_a2)
+        a2 = motor_a2 + a1 * coupling_12
+        value_joint_2 = a2 / DEGREE  # joint 2
         # limits of joint 2
         require(status, (value_joint_2 >= lowest_joint_2) & (value_joint_2 <= highest_joint_2), Status.UNREACHABLE)
-        motor_a3 = DEGREE*(axis_a3 - offset_a3)
-        a3 = motor_a3 + a1*coupling_13 + coupling_23*motor_a2
-        value_joint_3 = a3/DEGREE  # joint 3
+        motor_a3 = DEGREE * (axis_a3 - offset_a3)
+        a3 = motor_a3 + a1 * coupling_13 + coupling_23 * motor_a2
+        value_joint_3 = a3 / DEGREE  # joint 3
         # limits of joint 3
         require(status, (value_joint_3 >= lowest_joint_3) & (value_joint_3 <= highest_joint_3), Status.UNREACHABLE)
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -276,64 +240,53 @@ class ArrayPrograms(Programs):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self.constants
-        coupling_12 = k.coupling_12
-        coupling_13 = k.coupling_13
-        coupling_23 = k.coupling_23
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
-        link_length_3 = k.link_length_3
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_open_a2 = k.part_of_open_a2
-        scale_a2_squared_times_rounding = k.scale_a2_squared_times_rounding
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
+        coupling_12, coupling_13, coupling_23 = k.coupling_12, k.coupling_13, k.coupling_23
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        link_length_3, machine_scale_times_free_angle = k.link_length_3, k.machine_scale_times_free_angle
+        machine_scale_times_plane, mid_a1, mid_a2, mid_a3 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2, k.mid_a3
+        offset_a1, offset_a2, offset_a3, part_of_open_a2 = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_open_a2
+        scale_a2_squared_times_rounding, single_a1 = k.scale_a2_squared_times_rounding, k.single_a1
+        single_a2, single_a3 = k.single_a2, k.single_a3
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # z: a planar machine has none
         require(status, absolute(z) <= machine_scale_times_plane, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
-        cos_heading = heading_along/heading_divisor
-        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
-        sin_heading = heading_across/heading_divisor
-        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        cos_heading = heading_along / heading_divisor
+        wrist_x = x - link_length_3 * cos_heading  # what the unknown links must span
+        sin_heading = heading_across / heading_divisor
+        wrist_y = y - link_length_3 * sin_heading  # what the unknown links must span
+        reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)
         # 1 - cosine, times the scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         require(status, sine_square_a2 >= -scale_a2_squared_times_rounding, Status.UNREACHABLE)
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_a2_right = 2.0*root(sine_square_a2)/sum_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_a2_right = 2.0 * root(sine_square_a2) / sum_a2
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             # a1: linear pair in the x and y equations; its reference where it is free
             direction_x_a1_right = cos(free_a1)
             direction_y_a1_right = sin(free_a1)
@@ -342,14 +295,14 @@ class ArrayPrograms(Programs):
             direction_y_a1_left = direction_y_a1_right
             return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
 
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2
-        arm_across_a1_right = link_length_2*sin_a2_right
+        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
+        arm_across_a1_right = link_length_2 * sin_a2_right
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
-        direction_y_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
+        direction_x_a1_right = arm_across_a1_right * wrist_y + arm_along_a1 * wrist_x
+        direction_y_a1_right = arm_along_a1 * wrist_y - arm_across_a1_right * wrist_x
         # a1: linear pair in the x and y equations; its reference where it is free
-        direction_x_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y
-        direction_y_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
+        direction_x_a1_left = arm_along_a1 * wrist_x - arm_across_a1_right * wrist_y
+        direction_y_a1_left = arm_across_a1_right * wrist_x + arm_along_a1 * wrist_y
         direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
             reach > machine_scale_times_free_angle,
             (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
@@ -358,28 +311,28 @@ class ArrayPrograms(Programs):
         )
         angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: its turn
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        axis_a1_right = nearest_period(offset_a1 + angle_a1_right / DEGREE, near_a1)  # A1: its turn
         angle_a2_right = atan2(sin_a2_right, cos_a2)
-        motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
-        part_of_axis_a2_right = offset_a2 - motor_a1_right*part_of_open_a2
+        motor_a1_right = DEGREE * (axis_a1_right - offset_a1)
+        part_of_axis_a2_right = offset_a2 - motor_a1_right * part_of_open_a2
         angle_a1_left = atan2(direction_y_a1_left, direction_x_a1_left)
-        axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
-        motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
-        part_of_axis_a2_left = offset_a2 - motor_a1_left*part_of_open_a2
+        axis_a1_left = nearest_period(offset_a1 + angle_a1_left / DEGREE, near_a1)  # A1: its turn
+        motor_a1_left = DEGREE * (axis_a1_left - offset_a1)
+        part_of_axis_a2_left = offset_a2 - motor_a1_left * part_of_open_a2
 
         def elsewhere_near_a2_right(
-            part_of_axis_a2_left: Real, part_of_axis_a2_right: Real, ref_a1: Real, ref_a2: Real, single_a2: Truth,
+            part_of_axis_a2_left: Real, part_of_axis_a2_right: Real, ref_a1: Real, ref_a2: Real, single_a2: Truth
         ) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2) * DEGREE
 
             def elsewhere_open_a2_right(
-                free_a1: Real, part_of_axis_a2_left: Real, part_of_axis_a2_right: Real, ref_motor_a2: Real,
+                free_a1: Real, part_of_axis_a2_left: Real, part_of_axis_a2_right: Real, ref_motor_a2: Real
             ) -> Reals:
-                free_a2 = ref_motor_a2 + coupling_12*free_a1
-                open_a2_right = part_of_axis_a2_right + free_a2/DEGREE  # A2: where its turn is open
-                open_a2_left = part_of_axis_a2_left + free_a2/DEGREE  # A2: where its turn is open
+                free_a2 = ref_motor_a2 + coupling_12 * free_a1
+                open_a2_right = part_of_axis_a2_right + free_a2 / DEGREE  # A2: where its turn is open
+                open_a2_left = part_of_axis_a2_left + free_a2 / DEGREE  # A2: where its turn is open
                 return (open_a2_right, open_a2_left)
 
             open_a2_right = mid_a2  # A2: where its turn is open
@@ -394,7 +347,7 @@ class ArrayPrograms(Programs):
             near_a2_left = open_a2_left
             return (near_a2_right, near_a2_left)
 
-        near_a2_right = 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2)
+        near_a2_right = 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2)
         near_a2_left = near_a2_right
         near_a2_right, near_a2_left = elsewhere(
             turn_a2 != 0,
@@ -402,29 +355,34 @@ class ArrayPrograms(Programs):
             elsewhere_near_a2_right,
             (part_of_axis_a2_left, part_of_axis_a2_right, ref_a1, ref_a2, single_a2),
         )
-        axis_a2_right = nearest_period(part_of_axis_a2_right + angle_a2_right/DEGREE, near_a2_right)  # A2: its turn
+        # A2: its turn
+        axis_a2_right = nearest_period(part_of_axis_a2_right + angle_a2_right / DEGREE, near_a2_right)
         angle_heading = atan2(sin_heading, cos_heading)
-        motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
-        part_of_axis_a3_right = -coupling_13*motor_a1_right - coupling_23*motor_a2_right
+        motor_a2_right = DEGREE * (axis_a2_right - offset_a2)
+        part_of_axis_a3_right = -coupling_13 * motor_a1_right - coupling_23 * motor_a2_right
         angle_a2_left = atan2(-sin_a2_right, cos_a2)
-        axis_a2_left = nearest_period(part_of_axis_a2_left + angle_a2_left/DEGREE, near_a2_left)  # A2: its turn
-        motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
-        part_of_axis_a3_left = -coupling_13*motor_a1_left - coupling_23*motor_a2_left
+        axis_a2_left = nearest_period(part_of_axis_a2_left + angle_a2_left / DEGREE, near_a2_left)  # A2: its turn
+        motor_a2_left = DEGREE * (axis_a2_left - offset_a2)
+        part_of_axis_a3_left = -coupling_13 * motor_a1_left - coupling_23 * motor_a2_left
 
         def elsewhere_near_a3_right(
-            part_of_axis_a3_left: Real, part_of_axis_a3_right: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real,
+            part_of_axis_a3_left: Real,
+            part_of_axis_a3_right: Real,
+            ref_a1: Real,
+            ref_a2: Real,
+            ref_a3: Real,
             single_a3: Truth,
         ) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2) * DEGREE
 
             def elsewhere_open_a3_right(
-                free_a1: Real, part_of_axis_a3_left: Real, part_of_axis_a3_right: Real, ref_a3: Real, ref_motor_a2: Real,
+                free_a1: Real, part_of_axis_a3_left: Real, part_of_axis_a3_right: Real, ref_a3: Real, ref_motor_a2: Real
             ) -> Reals:
-                ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
-                free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                open_a3_right = offset_a3 + (free_a3 + part_of_axis_a3_right)/DEGREE  # A3: where its turn is open
-                open_a3_left = offset_a3 + (free_a3 + part_of_axis_a3_left)/DEGREE  # A3: where its turn is open
+                ref_motor_a3 = (ref_a3 - offset_a3) * DEGREE
+                free_a3 = ref_motor_a3 + coupling_13 * free_a1 + coupling_23 * ref_motor_a2
+                open_a3_right = offset_a3 + (free_a3 + part_of_axis_a3_right) / DEGREE  # A3: where its turn is open
+                open_a3_left = offset_a3 + (free_a3 + part_of_axis_a3_left) / DEGREE  # A3: where its turn is open
                 return (open_a3_right, open_a3_left)
 
             open_a3_right = mid_a3  # A3: where its turn is open
@@ -439,7 +397,7 @@ class ArrayPrograms(Programs):
             near_a3_left = open_a3_left
             return (near_a3_right, near_a3_left)
 
-        near_a3_right = 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3)
+        near_a3_right = 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3)
         near_a3_left = near_a3_right
         near_a3_right, near_a3_left = elsewhere(
             turn_a3 != 0,
@@ -449,12 +407,12 @@ class ArrayPrograms(Programs):
         )
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_right = nearest_period(
-            offset_a3 + (angle_heading + part_of_axis_a3_right - angle_a1_right - angle_a2_right)/DEGREE,
+            offset_a3 + (angle_heading + part_of_axis_a3_right - angle_a1_right - angle_a2_right) / DEGREE,
             near_a3_right,
         )
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_left = nearest_period(
-            offset_a3 + (angle_heading + part_of_axis_a3_left - angle_a1_left - angle_a2_left)/DEGREE, near_a3_left,
+            offset_a3 + (angle_heading + part_of_axis_a3_left - angle_a1_left - angle_a2_left) / DEGREE, near_a3_left
         )
         return (
             ((axis_a1_right, axis_a2_right, axis_a3_right), status),

@@ -23,26 +23,23 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a, axis_b = axes
         k = self.constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
+        offset_a, offset_b = k.offset_a, k.offset_b
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9), Status.BAD_INPUT)
         a = axis_a - offset_a
         b = axis_b - offset_b
-        x = 0.5*(a + b)
-        y = 0.5*(b - a)
+        x = 0.5 * (a + b)
+        y = 0.5 * (b - a)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
-        machine_scale_times_plane = k.machine_scale_times_plane
-        offset_a = k.offset_a
-        offset_b = k.offset_b
+        machine_scale_times_plane, offset_a, offset_b = k.machine_scale_times_plane, k.offset_a, k.offset_b
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
@@ -58,15 +55,8 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a, axis_b = axes
         k = self.constants
-        highest_a = k.highest_a
-        highest_b = k.highest_b
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        lowest_a = k.lowest_a
-        lowest_b = k.lowest_b
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        offset_a = k.offset_a
+        highest_a, highest_b, highest_x, highest_y = k.highest_a, k.highest_b, k.highest_x, k.highest_y
+        lowest_a, lowest_b, lowest_x, lowest_y, offset_a = k.lowest_a, k.lowest_b, k.lowest_x, k.lowest_y, k.offset_a
         offset_b = k.offset_b
         status = passed(axes)
         # limits of A
@@ -75,10 +65,10 @@ class ArrayPrograms(Programs):
         require(status, (axis_b >= lowest_b) & (axis_b <= highest_b), Status.UNREACHABLE)
         a = axis_a - offset_a
         b = axis_b - offset_b
-        value_x = 0.5*(a + b)  # X of the carriage
+        value_x = 0.5 * (a + b)  # X of the carriage
         # limits of X of the carriage
         require(status, (value_x >= lowest_x) & (value_x <= highest_x), Status.UNREACHABLE)
-        value_y = 0.5*(b - a)  # Y of the carriage
+        value_y = 0.5 * (b - a)  # Y of the carriage
         # limits of Y of the carriage
         require(status, (value_y >= lowest_y) & (value_y <= highest_y), Status.UNREACHABLE)
         return status

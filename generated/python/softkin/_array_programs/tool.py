@@ -5,18 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import (
-    Codes,
-    OrientationPrograms,
-    Reals,
-    Rotation,
-    Signs,
-    Turns,
-    Vector,
-    absolute,
-    passed,
-    require,
-)
+from softkin._array import Codes, OrientationPrograms, Reals, Rotation, Signs, Turns, Vector, absolute, passed, require
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -33,14 +22,12 @@ class ArrayPrograms(OrientationPrograms):
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
         k = self.constants
-        tool_x = k.tool_x
-        tool_y = k.tool_y
-        tool_z = k.tool_z
+        tool_x, tool_y, tool_z = k.tool_x, k.tool_y, k.tool_z
         status = passed(axes)
         return ((tool_x, tool_y, tool_z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         status = passed(position)
@@ -56,20 +43,19 @@ class ArrayPrograms(OrientationPrograms):
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self.constants
-        tool_x = k.tool_x
-        tool_y = k.tool_y
-        tool_z = k.tool_z
+        tool_x, tool_y, tool_z = k.tool_x, k.tool_y, k.tool_z
         status = passed(rotation[0])
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(base_axis_x) <= 1e9) & (absolute(base_axis_y) <= 1e9) & (absolute(base_axis_z) <= 1e9)
-                & (absolute(flange_axis_x) <= 1e9) & (absolute(flange_axis_y) <= 1e9)
-                & (absolute(flange_axis_z) <= 1e9)
-            ),
+            (absolute(base_axis_x) <= 1e9)
+            & (absolute(base_axis_y) <= 1e9)
+            & (absolute(base_axis_z) <= 1e9)
+            & (absolute(flange_axis_x) <= 1e9)
+            & (absolute(flange_axis_y) <= 1e9)
+            & (absolute(flange_axis_z) <= 1e9),
             Status.BAD_INPUT,
         )
         # what the flange holds, along the axis that it turns about
-        flange_along = flange_axis_x*tool_x + flange_axis_y*tool_y + flange_axis_z*tool_z
-        return (base_axis_x*flange_along, base_axis_y*flange_along, base_axis_z*flange_along), status
+        flange_along = flange_axis_x * tool_x + flange_axis_y * tool_y + flange_axis_z * tool_z
+        return (base_axis_x * flange_along, base_axis_y * flange_along, base_axis_z * flange_along), status

@@ -38,23 +38,14 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        arm_length = k.arm_length
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        cos_rail_angle = k.cos_rail_angle
-        half_by_arm_length = k.half_by_arm_length
-        half_sin_rail_angle = k.half_sin_rail_angle
-        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
-        sin_rail_angle = k.sin_rail_angle
-        sin_rail_angle_times_root_of_3 = k.sin_rail_angle_times_root_of_3
+        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        cos_rail_angle, half_by_arm_length = k.cos_rail_angle, k.half_by_arm_length
+        half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
+        part_of_pivot_2_y, part_of_pivot_2_y_2 = k.part_of_pivot_2_y, k.part_of_pivot_2_y_2
+        sin_rail_angle, sin_rail_angle_times_root_of_3 = k.sin_rail_angle, k.sin_rail_angle_times_root_of_3
         twice_cos_rail_angle = k.twice_cos_rail_angle
         status = passed(axes)
         # numbers of reasonable size
@@ -64,103 +55,90 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y  # rod 2
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
+        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
         a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        pivot_1_z = -a1 * cos_rail_angle  # rod 1
+        pivot_2_z = -a2 * cos_rail_angle  # rod 2
         apart_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        pivot_3_z = -a3 * cos_rail_angle  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
+        normal_x = apart_3_z * pivot_2_y - apart_2_z * pivot_3_y
+        pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1
+        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
+        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        normal_y = apart_2_z * apart_3_x - apart_2_x * apart_3_z
+        normal_z = apart_2_x * pivot_3_y - apart_3_x * pivot_2_y
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
         # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
+        share_2 = 0.5 * (apart_2_x * apart_2_x + apart_2_z * apart_2_z + pivot_2_y * pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        share_3 = 0.5 * (apart_3_x * apart_3_x + apart_3_z * apart_3_z + pivot_3_y * pivot_3_y)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
-        one_by_normal_square = 1.0/normal_divisor
-        foot_x = (
-            one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+        one_by_normal_square = 1.0 / normal_divisor
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - apart_3_z * normal_y) * share_2
+            + (apart_2_z * normal_y - normal_z * pivot_2_y) * share_3
         )
-        foot_y = (
-            one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+        foot_y = one_by_normal_square * (
+            (apart_3_z * normal_x - apart_3_x * normal_z) * share_2
+            + (apart_2_x * normal_z - apart_2_z * normal_x) * share_3
         )
-        foot_z = (
-            one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+        foot_z = one_by_normal_square * (
+            (apart_3_x * normal_y - normal_x * pivot_3_y) * share_2
+            + (normal_x * pivot_2_y - apart_2_x * normal_y) * share_3
         )
         # the square of the height over the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         require(status, height_square >= -arm_length_squared_times_rounding, Status.IMPOSSIBLE)
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + normal_y*rise
-        z = foot_z + pivot_1_z + normal_z*rise
+        rise = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + normal_x * rise
+        y = foot_y + normal_y * rise
+        z = foot_z + pivot_1_z + normal_z * rise
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
-        branch_carriage_1 = (a1 + z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
+        branch_carriage_1 = (a1 + z * cos_rail_angle + span_1_x * sin_rail_angle) / arm_length
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
         span_2_x = x - part_of_pivot_2_x  # rod 2
-        part_of_branch_carriage_2 = span_2_x*sin_rail_angle - twice_cos_rail_angle*z
+        part_of_branch_carriage_2 = span_2_x * sin_rail_angle - twice_cos_rail_angle * z
         branch_carriage_2 = (
-            (2.0*a2 + span_2_y*sin_rail_angle_times_root_of_3 - part_of_branch_carriage_2)*half_by_arm_length
-        )
+            2.0 * a2 + span_2_y * sin_rail_angle_times_root_of_3 - part_of_branch_carriage_2
+        ) * half_by_arm_length
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         branch_carriage_3 = (
-            (2.0*a3 - part_of_branch_carriage_2 - span_3_y*sin_rail_angle_times_root_of_3)*half_by_arm_length
-        )
+            2.0 * a3 - part_of_branch_carriage_2 - span_3_y * sin_rail_angle_times_root_of_3
+        ) * half_by_arm_length
         return (
-            (
-                (x, y, z),
-                ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-                (branch_carriage_1, branch_carriage_2, branch_carriage_3),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            (branch_carriage_1, branch_carriage_2, branch_carriage_3),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self.constants
-        arm_length = k.arm_length
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        cos_rail_angle = k.cos_rail_angle
+        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared_times_rounding, cos_rail_angle = k.arm_length_squared_times_rounding, k.cos_rail_angle
         cos_rail_angle_squared = k.cos_rail_angle_squared
         cos_rail_angle_times_sin_rail_angle = k.cos_rail_angle_times_sin_rail_angle
-        half_by_arm_length = k.half_by_arm_length
-        half_sin_rail_angle = k.half_sin_rail_angle
-        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
-        part_of_root_square_a1 = k.part_of_root_square_a1
-        part_of_root_square_a2 = k.part_of_root_square_a2
+        half_by_arm_length, half_sin_rail_angle = k.half_by_arm_length, k.half_sin_rail_angle
+        inner_radius_minus_outer_radius, min_type2_margin = k.inner_radius_minus_outer_radius, k.min_type2_margin
+        offset_a1, offset_a2, offset_a3, part_of_pivot_2_x = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_pivot_2_x
+        part_of_pivot_2_y, part_of_pivot_2_y_2 = k.part_of_pivot_2_y, k.part_of_pivot_2_y_2
+        part_of_root_square_a1, part_of_root_square_a2 = k.part_of_root_square_a1, k.part_of_root_square_a2
         part_of_root_square_a2_2 = k.part_of_root_square_a2_2
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
-        sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
-        sin_rail_angle = k.sin_rail_angle
+        sin_max_angle_ball_joint, sin_rail_angle = k.sin_max_angle_ball_joint, k.sin_rail_angle
         sin_rail_angle_squared = k.sin_rail_angle_squared
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
         sin_rail_angle_squared_times_3_by_4 = k.sin_rail_angle_squared_times_3_by_4
@@ -168,74 +146,76 @@ class ArrayPrograms(Programs):
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
-        z_minus_cos_rail_angle_squared_times_z = z - z*cos_rail_angle_squared
+        z_minus_cos_rail_angle_squared_times_z = z - z * cos_rail_angle_squared
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z
-            - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x - y*y
+            arm_length_squared
+            + (part_of_root_square_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
+            - (span_1_x - span_1_x * sin_rail_angle_squared) * span_1_x
+            - y * y
         )
         # rod 1 cannot reach
         require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
         part_of_root_square_a2_3 = (
-            -z_minus_cos_rail_angle_squared_times_z - span_2_x*cos_rail_angle_times_sin_rail_angle
+            -z_minus_cos_rail_angle_squared_times_z - span_2_x * cos_rail_angle_times_sin_rail_angle
         )
-        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
+        part_of_root_square_a2_4 = span_2_x * sin_rail_angle_squared_times_1_by_4 - span_2_x
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + (part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)*z
-            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
-            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
+            arm_length_squared
+            + (part_of_root_square_a2_3 + part_of_root_square_a2 * span_2_y) * z
+            - (part_of_root_square_a2_2 * span_2_y - part_of_root_square_a2_4) * span_2_x
+            - (span_2_y - span_2_y * sin_rail_angle_squared_times_3_by_4) * span_2_y
         )
         # rod 2 cannot reach
         require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
-            + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
-            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
+            arm_length_squared
+            + span_3_y * (span_3_y * sin_rail_angle_squared_times_3_by_4 - span_3_y)
+            + (part_of_root_square_a2_3 - part_of_root_square_a2 * span_3_y) * z
+            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2 * span_3_y) * span_2_x
         )
         # rod 3 cannot reach
         require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
-        cos_rail_angle_times_z = z*cos_rail_angle
-        middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
-        a1 = root(root_square_a1)*sigma_carriage_1 - middle_a1
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+        cos_rail_angle_times_z = z * cos_rail_angle
+        middle_a1 = cos_rail_angle_times_z + span_1_x * sin_rail_angle
+        a1 = root(root_square_a1) * sigma_carriage_1 - middle_a1
+        pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
+        pivot_1_z = -a1 * cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
-        part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle*span_2_x
-        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
-        a2 = middle_a2 + root(root_square_a2)*sigma_carriage_2
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2
+        part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
+        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y * span_2_y
+        a2 = middle_a2 + root(root_square_a2) * sigma_carriage_2
+        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y  # rod 2
+        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y  # rod 2
         rod_2_y = y - pivot_2_y
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        pivot_2_z = -a2 * cos_rail_angle  # rod 2
         rod_2_z = z - pivot_2_z
-        middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
-        a3 = middle_a3 + root(root_square_a3)*sigma_carriage_3
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3
+        middle_a3 = part_of_pivot_2_y * span_3_y - part_of_middle_a2
+        a3 = middle_a3 + root(root_square_a3) * sigma_carriage_3
+        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
+        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
         rod_3_y = y - pivot_3_y
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        pivot_3_z = -a3 * cos_rail_angle  # rod 3
         rod_3_z = z - pivot_3_z
-        type2_rods_coplanar = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-                + (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
-            )
+        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+            + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         require(status, type2_rods_coplanar >= min_type2_margin, Status.UNREACHABLE)
         # ball joint of rod 1
-        require(status, absolute(y)/arm_length <= sin_max_angle_ball_joint, Status.UNREACHABLE)
-        part = root_of_3_times_half_by_arm_length*x
-        half_by_arm_length_times_y = half_by_arm_length*y
+        require(status, absolute(y) / arm_length <= sin_max_angle_ball_joint, Status.UNREACHABLE)
+        part = root_of_3_times_half_by_arm_length * x
+        half_by_arm_length_times_y = half_by_arm_length * y
         # ball joint of rod 2
         require(status, absolute(half_by_arm_length_times_y + part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 3
@@ -249,12 +229,8 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
+        highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
+        lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -265,34 +241,24 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
         k = self.constants
-        arm_length = k.arm_length
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        cos_rail_angle = k.cos_rail_angle
+        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared_times_rounding, cos_rail_angle = k.arm_length_squared_times_rounding, k.cos_rail_angle
         cos_rail_angle_squared = k.cos_rail_angle_squared
         cos_rail_angle_times_sin_rail_angle = k.cos_rail_angle_times_sin_rail_angle
-        half_by_arm_length = k.half_by_arm_length
-        half_sin_rail_angle = k.half_sin_rail_angle
-        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
-        part_of_root_square_a1 = k.part_of_root_square_a1
-        part_of_root_square_a2 = k.part_of_root_square_a2
+        half_by_arm_length, half_sin_rail_angle = k.half_by_arm_length, k.half_sin_rail_angle
+        inner_radius_minus_outer_radius, min_type2_margin = k.inner_radius_minus_outer_radius, k.min_type2_margin
+        offset_a1, offset_a2, offset_a3, part_of_pivot_2_x = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_pivot_2_x
+        part_of_pivot_2_y, part_of_pivot_2_y_2 = k.part_of_pivot_2_y, k.part_of_pivot_2_y_2
+        part_of_root_square_a1, part_of_root_square_a2 = k.part_of_root_square_a1, k.part_of_root_square_a2
         part_of_root_square_a2_2 = k.part_of_root_square_a2_2
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
-        sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
-        sin_rail_angle = k.sin_rail_angle
+        sin_max_angle_ball_joint, sin_rail_angle = k.sin_max_angle_ball_joint, k.sin_rail_angle
         sin_rail_angle_squared = k.sin_rail_angle_squared
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
         sin_rail_angle_squared_times_3_by_4 = k.sin_rail_angle_squared_times_3_by_4
@@ -300,76 +266,77 @@ class ArrayPrograms(Programs):
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
-        z_minus_cos_rail_angle_squared_times_z = z - z*cos_rail_angle_squared
+        z_minus_cos_rail_angle_squared_times_z = z - z * cos_rail_angle_squared
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + (part_of_root_square_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z
-            - (span_1_x - span_1_x*sin_rail_angle_squared)*span_1_x - y*y
+            arm_length_squared
+            + (part_of_root_square_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
+            - (span_1_x - span_1_x * sin_rail_angle_squared) * span_1_x
+            - y * y
         )
         # rod 1 cannot reach
         require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y_2  # rod 2
         part_of_root_square_a2_3 = (
-            -z_minus_cos_rail_angle_squared_times_z - span_2_x*cos_rail_angle_times_sin_rail_angle
+            -z_minus_cos_rail_angle_squared_times_z - span_2_x * cos_rail_angle_times_sin_rail_angle
         )
-        part_of_root_square_a2_4 = span_2_x*sin_rail_angle_squared_times_1_by_4 - span_2_x
+        part_of_root_square_a2_4 = span_2_x * sin_rail_angle_squared_times_1_by_4 - span_2_x
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + (part_of_root_square_a2_3 + part_of_root_square_a2*span_2_y)*z
-            - (part_of_root_square_a2_2*span_2_y - part_of_root_square_a2_4)*span_2_x
-            - (span_2_y - span_2_y*sin_rail_angle_squared_times_3_by_4)*span_2_y
+            arm_length_squared
+            + (part_of_root_square_a2_3 + part_of_root_square_a2 * span_2_y) * z
+            - (part_of_root_square_a2_2 * span_2_y - part_of_root_square_a2_4) * span_2_x
+            - (span_2_y - span_2_y * sin_rail_angle_squared_times_3_by_4) * span_2_y
         )
         # rod 2 cannot reach
         require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_3_y = part_of_pivot_2_y_2 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + span_3_y*(span_3_y*sin_rail_angle_squared_times_3_by_4 - span_3_y)
-            + (part_of_root_square_a2_3 - part_of_root_square_a2*span_3_y)*z
-            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2*span_3_y)*span_2_x
+            arm_length_squared
+            + span_3_y * (span_3_y * sin_rail_angle_squared_times_3_by_4 - span_3_y)
+            + (part_of_root_square_a2_3 - part_of_root_square_a2 * span_3_y) * z
+            - (-part_of_root_square_a2_4 - part_of_root_square_a2_2 * span_3_y) * span_2_x
         )
         # rod 3 cannot reach
         require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         # ball joint of rod 1
-        require(status, absolute(y)/arm_length <= sin_max_angle_ball_joint, Status.UNREACHABLE)
-        part = root_of_3_times_half_by_arm_length*x
-        half_by_arm_length_times_y = half_by_arm_length*y
+        require(status, absolute(y) / arm_length <= sin_max_angle_ball_joint, Status.UNREACHABLE)
+        part = root_of_3_times_half_by_arm_length * x
+        half_by_arm_length_times_y = half_by_arm_length * y
         # ball joint of rod 2
         require(status, absolute(half_by_arm_length_times_y + part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 3
         require(status, absolute(half_by_arm_length_times_y - part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
-        cos_rail_angle_times_z = z*cos_rail_angle
-        middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
+        cos_rail_angle_times_z = z * cos_rail_angle
+        middle_a1 = cos_rail_angle_times_z + span_1_x * sin_rail_angle
         a1_below = root(root_square_a1) - middle_a1
-        pivot_1_x_below = inner_radius_minus_outer_radius - a1_below*sin_rail_angle  # rod 1
+        pivot_1_x_below = inner_radius_minus_outer_radius - a1_below * sin_rail_angle  # rod 1
         rod_1_x_below = x - pivot_1_x_below
-        pivot_1_z_below = -a1_below*cos_rail_angle  # rod 1
+        pivot_1_z_below = -a1_below * cos_rail_angle  # rod 1
         rod_1_z_below = z - pivot_1_z_below
-        part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle*span_2_x
-        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
+        part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
+        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y * span_2_y
         a2_below = middle_a2 + root(root_square_a2)
-        pivot_2_x_below = part_of_pivot_2_x + a2_below*half_sin_rail_angle  # rod 2
+        pivot_2_x_below = part_of_pivot_2_x + a2_below * half_sin_rail_angle  # rod 2
         rod_2_x_below = x - pivot_2_x_below
-        pivot_2_y_below = part_of_pivot_2_y_2 - a2_below*part_of_pivot_2_y  # rod 2
+        pivot_2_y_below = part_of_pivot_2_y_2 - a2_below * part_of_pivot_2_y  # rod 2
         rod_2_y_below = y - pivot_2_y_below
-        pivot_2_z_below = -a2_below*cos_rail_angle  # rod 2
+        pivot_2_z_below = -a2_below * cos_rail_angle  # rod 2
         rod_2_z_below = z - pivot_2_z_below
-        middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
+        middle_a3 = part_of_pivot_2_y * span_3_y - part_of_middle_a2
         a3_below = middle_a3 + root(root_square_a3)
-        pivot_3_x_below = part_of_pivot_2_x + a3_below*half_sin_rail_angle  # rod 3
+        pivot_3_x_below = part_of_pivot_2_x + a3_below * half_sin_rail_angle  # rod 3
         rod_3_x_below = x - pivot_3_x_below
-        pivot_3_y_below = a3_below*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
+        pivot_3_y_below = a3_below * part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
         rod_3_y_below = y - pivot_3_y_below
-        pivot_3_z_below = -a3_below*cos_rail_angle  # rod 3
+        pivot_3_z_below = -a3_below * cos_rail_angle  # rod 3
         rod_3_z_below = z - pivot_3_z_below
-        type2_rods_coplanar_below_below_below = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_below*rod_3_y_below - rod_2_y_below*rod_3_z_below)*rod_1_x_below
-                + (rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_y_below)*rod_1_z_below
-                + (rod_2_x_below*rod_3_z_below - rod_2_z_below*rod_3_x_below)*y
-            )
+        type2_rods_coplanar_below_below_below = -part_of_type2_rods_coplanar * (
+            (rod_2_z_below * rod_3_y_below - rod_2_y_below * rod_3_z_below) * rod_1_x_below
+            + (rod_2_y_below * rod_3_x_below - rod_2_x_below * rod_3_y_below) * rod_1_z_below
+            + (rod_2_x_below * rod_3_z_below - rod_2_z_below * rod_3_x_below) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = select(type2_rods_coplanar_below_below_below >= min_type2_margin, 0, 3)
@@ -377,94 +344,73 @@ class ArrayPrograms(Programs):
         axis_a2_below = a2_below + offset_a2
         axis_a3_below = a3_below + offset_a3
         a3_above = middle_a3 - root(root_square_a3)
-        pivot_3_x_above = part_of_pivot_2_x + a3_above*half_sin_rail_angle  # rod 3
+        pivot_3_x_above = part_of_pivot_2_x + a3_above * half_sin_rail_angle  # rod 3
         rod_3_x_above = x - pivot_3_x_above
-        pivot_3_y_above = a3_above*part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
+        pivot_3_y_above = a3_above * part_of_pivot_2_y - part_of_pivot_2_y_2  # rod 3
         rod_3_y_above = y - pivot_3_y_above
-        pivot_3_z_above = -a3_above*cos_rail_angle  # rod 3
+        pivot_3_z_above = -a3_above * cos_rail_angle  # rod 3
         rod_3_z_above = z - pivot_3_z_above
-        type2_rods_coplanar_below_below_above = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_below*rod_3_y_above - rod_2_y_below*rod_3_z_above)*rod_1_x_below
-                + (rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_y_above)*rod_1_z_below
-                + (rod_2_x_below*rod_3_z_above - rod_2_z_below*rod_3_x_above)*y
-            )
+        type2_rods_coplanar_below_below_above = -part_of_type2_rods_coplanar * (
+            (rod_2_z_below * rod_3_y_above - rod_2_y_below * rod_3_z_above) * rod_1_x_below
+            + (rod_2_y_below * rod_3_x_above - rod_2_x_below * rod_3_y_above) * rod_1_z_below
+            + (rod_2_x_below * rod_3_z_above - rod_2_z_below * rod_3_x_above) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0, 3)
         axis_a3_above = a3_above + offset_a3
         a2_above = middle_a2 - root(root_square_a2)
-        pivot_2_x_above = part_of_pivot_2_x + a2_above*half_sin_rail_angle  # rod 2
+        pivot_2_x_above = part_of_pivot_2_x + a2_above * half_sin_rail_angle  # rod 2
         rod_2_x_above = x - pivot_2_x_above
-        pivot_2_y_above = part_of_pivot_2_y_2 - a2_above*part_of_pivot_2_y  # rod 2
+        pivot_2_y_above = part_of_pivot_2_y_2 - a2_above * part_of_pivot_2_y  # rod 2
         rod_2_y_above = y - pivot_2_y_above
-        pivot_2_z_above = -a2_above*cos_rail_angle  # rod 2
+        pivot_2_z_above = -a2_above * cos_rail_angle  # rod 2
         rod_2_z_above = z - pivot_2_z_above
-        type2_rods_coplanar_below_above_below = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_above*rod_3_y_below - rod_2_y_above*rod_3_z_below)*rod_1_x_below
-                + (rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_y_below)*rod_1_z_below
-                + (rod_2_x_above*rod_3_z_below - rod_2_z_above*rod_3_x_below)*y
-            )
+        type2_rods_coplanar_below_above_below = -part_of_type2_rods_coplanar * (
+            (rod_2_z_above * rod_3_y_below - rod_2_y_above * rod_3_z_below) * rod_1_x_below
+            + (rod_2_y_above * rod_3_x_below - rod_2_x_above * rod_3_y_below) * rod_1_z_below
+            + (rod_2_x_above * rod_3_z_below - rod_2_z_above * rod_3_x_below) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0, 3)
         axis_a2_above = a2_above + offset_a2
-        type2_rods_coplanar_below_above_above = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_above*rod_3_y_above - rod_2_y_above*rod_3_z_above)*rod_1_x_below
-                + (rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_y_above)*rod_1_z_below
-                + (rod_2_x_above*rod_3_z_above - rod_2_z_above*rod_3_x_above)*y
-            )
+        type2_rods_coplanar_below_above_above = -part_of_type2_rods_coplanar * (
+            (rod_2_z_above * rod_3_y_above - rod_2_y_above * rod_3_z_above) * rod_1_x_below
+            + (rod_2_y_above * rod_3_x_above - rod_2_x_above * rod_3_y_above) * rod_1_z_below
+            + (rod_2_x_above * rod_3_z_above - rod_2_z_above * rod_3_x_above) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0, 3)
         a1_above = -middle_a1 - root(root_square_a1)
-        pivot_1_x_above = inner_radius_minus_outer_radius - a1_above*sin_rail_angle  # rod 1
+        pivot_1_x_above = inner_radius_minus_outer_radius - a1_above * sin_rail_angle  # rod 1
         rod_1_x_above = x - pivot_1_x_above
-        pivot_1_z_above = -a1_above*cos_rail_angle  # rod 1
+        pivot_1_z_above = -a1_above * cos_rail_angle  # rod 1
         rod_1_z_above = z - pivot_1_z_above
-        type2_rods_coplanar_above_below_below = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_below*rod_3_y_below - rod_2_y_below*rod_3_z_below)*rod_1_x_above
-                + (rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_y_below)*rod_1_z_above
-                + (rod_2_x_below*rod_3_z_below - rod_2_z_below*rod_3_x_below)*y
-            )
+        type2_rods_coplanar_above_below_below = -part_of_type2_rods_coplanar * (
+            (rod_2_z_below * rod_3_y_below - rod_2_y_below * rod_3_z_below) * rod_1_x_above
+            + (rod_2_y_below * rod_3_x_below - rod_2_x_below * rod_3_y_below) * rod_1_z_above
+            + (rod_2_x_below * rod_3_z_below - rod_2_z_below * rod_3_x_below) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0, 3)
         axis_a1_above = a1_above + offset_a1
-        type2_rods_coplanar_above_below_above = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_below*rod_3_y_above - rod_2_y_below*rod_3_z_above)*rod_1_x_above
-                + (rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_y_above)*rod_1_z_above
-                + (rod_2_x_below*rod_3_z_above - rod_2_z_below*rod_3_x_above)*y
-            )
+        type2_rods_coplanar_above_below_above = -part_of_type2_rods_coplanar * (
+            (rod_2_z_below * rod_3_y_above - rod_2_y_below * rod_3_z_above) * rod_1_x_above
+            + (rod_2_y_below * rod_3_x_above - rod_2_x_below * rod_3_y_above) * rod_1_z_above
+            + (rod_2_x_below * rod_3_z_above - rod_2_z_below * rod_3_x_above) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0, 3)
-        type2_rods_coplanar_above_above_below = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_above*rod_3_y_below - rod_2_y_above*rod_3_z_below)*rod_1_x_above
-                + (rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_y_below)*rod_1_z_above
-                + (rod_2_x_above*rod_3_z_below - rod_2_z_above*rod_3_x_below)*y
-            )
+        type2_rods_coplanar_above_above_below = -part_of_type2_rods_coplanar * (
+            (rod_2_z_above * rod_3_y_below - rod_2_y_above * rod_3_z_below) * rod_1_x_above
+            + (rod_2_y_above * rod_3_x_below - rod_2_x_above * rod_3_y_below) * rod_1_z_above
+            + (rod_2_x_above * rod_3_z_below - rod_2_z_above * rod_3_x_below) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0, 3)
-        type2_rods_coplanar_above_above_above = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_above*rod_3_y_above - rod_2_y_above*rod_3_z_above)*rod_1_x_above
-                + (rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_y_above)*rod_1_z_above
-                + (rod_2_x_above*rod_3_z_above - rod_2_z_above*rod_3_x_above)*y
-            )
+        type2_rods_coplanar_above_above_above = -part_of_type2_rods_coplanar * (
+            (rod_2_z_above * rod_3_y_above - rod_2_y_above * rod_3_z_above) * rod_1_x_above
+            + (rod_2_y_above * rod_3_x_above - rod_2_x_above * rod_3_y_above) * rod_1_z_above
+            + (rod_2_x_above * rod_3_z_above - rod_2_z_above * rod_3_x_above) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = select(type2_rods_coplanar_above_above_above >= min_type2_margin, 0, 3)

@@ -38,28 +38,15 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        apart_2_x = k.apart_2_x
-        apart_2_x_times_normal_z = k.apart_2_x_times_normal_z
-        apart_2_y = k.apart_2_y
-        apart_2_y_times_normal_z = k.apart_2_y_times_normal_z
-        apart_3_x = k.apart_3_x
-        apart_3_x_times_normal_z = k.apart_3_x_times_normal_z
-        apart_3_y = k.apart_3_y
-        apart_3_y_times_normal_z = k.apart_3_y_times_normal_z
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        normal_z = k.normal_z
-        normal_z_squared = k.normal_z_squared
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        one_by_arm_length = k.one_by_arm_length
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_share_2 = k.part_of_share_2
-        part_of_share_3 = k.part_of_share_3
-        pivot_1_x = k.pivot_1_x
-        pivot_1_y = k.pivot_1_y
+        apart_2_x, apart_2_x_times_normal_z, apart_2_y = k.apart_2_x, k.apart_2_x_times_normal_z, k.apart_2_y
+        apart_2_y_times_normal_z, apart_3_x = k.apart_2_y_times_normal_z, k.apart_3_x
+        apart_3_x_times_normal_z, apart_3_y = k.apart_3_x_times_normal_z, k.apart_3_y
+        apart_3_y_times_normal_z, arm_length_squared = k.apart_3_y_times_normal_z, k.arm_length_squared
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        normal_z, normal_z_squared, offset_a1, offset_a2 = k.normal_z, k.normal_z_squared, k.offset_a1, k.offset_a2
+        offset_a3, one_by_arm_length = k.offset_a3, k.one_by_arm_length
+        part_of_normal_divisor, part_of_share_2 = k.part_of_normal_divisor, k.part_of_share_2
+        part_of_share_3, pivot_1_x, pivot_1_y = k.part_of_share_3, k.pivot_1_x, k.pivot_1_y
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -72,118 +59,99 @@ class ArrayPrograms(Programs):
         apart_2_z = a2 - a1
         a3 = axis_a3 - offset_a3
         apart_3_z = a3 - a1
-        normal_x = apart_2_y*apart_3_z - apart_2_z*apart_3_y
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # normal to the centres
+        normal_x = apart_2_y * apart_3_z - apart_2_z * apart_3_y
+        normal_y = apart_2_z * apart_3_x - apart_2_x * apart_3_z
+        normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
-        share_2 = part_of_share_2 + 0.5*apart_2_z*apart_2_z  # how far centre 2 draws the foot
-        share_3 = part_of_share_3 + 0.5*apart_3_z*apart_3_z  # how far centre 3 draws the foot
+        share_2 = part_of_share_2 + 0.5 * apart_2_z * apart_2_z  # how far centre 2 draws the foot
+        share_3 = part_of_share_3 + 0.5 * apart_3_z * apart_3_z  # how far centre 3 draws the foot
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
-        one_by_normal_square = 1.0/normal_divisor
-        foot_x = (
-            one_by_normal_square
-            *(
-                (apart_3_y_times_normal_z - apart_3_z*normal_y)*share_2
-                + (apart_2_z*normal_y - apart_2_y_times_normal_z)*share_3
-            )
+        one_by_normal_square = 1.0 / normal_divisor
+        foot_x = one_by_normal_square * (
+            (apart_3_y_times_normal_z - apart_3_z * normal_y) * share_2
+            + (apart_2_z * normal_y - apart_2_y_times_normal_z) * share_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (apart_3_z*normal_x - apart_3_x_times_normal_z)*share_2
-                + (apart_2_x_times_normal_z - apart_2_z*normal_x)*share_3
-            )
+        foot_y = one_by_normal_square * (
+            (apart_3_z * normal_x - apart_3_x_times_normal_z) * share_2
+            + (apart_2_x_times_normal_z - apart_2_z * normal_x) * share_3
         )
-        foot_z = (
-            one_by_normal_square
-            *((apart_3_x*normal_y - apart_3_y*normal_x)*share_2 + (apart_2_y*normal_x - apart_2_x*normal_y)*share_3)
+        foot_z = one_by_normal_square * (
+            (apart_3_x * normal_y - apart_3_y * normal_x) * share_2
+            + (apart_2_y * normal_x - apart_2_x * normal_y) * share_3
         )
         # the square of the height over the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         require(status, height_square >= -arm_length_squared_times_rounding, Status.IMPOSSIBLE)
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + pivot_1_y + normal_y*rise
-        z = a1 + foot_z + normal_z*rise
-        branch_carriage_1 = (a1 - z)*one_by_arm_length
-        branch_carriage_2 = (a2 - z)*one_by_arm_length
-        branch_carriage_3 = (a3 - z)*one_by_arm_length
+        rise = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + normal_x * rise
+        y = foot_y + pivot_1_y + normal_y * rise
+        z = a1 + foot_z + normal_z * rise
+        branch_carriage_1 = (a1 - z) * one_by_arm_length
+        branch_carriage_2 = (a2 - z) * one_by_arm_length
+        branch_carriage_3 = (a3 - z) * one_by_arm_length
         return (
-            (
-                (x, y, z),
-                ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-                (branch_carriage_1, branch_carriage_2, branch_carriage_3),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            (branch_carriage_1, branch_carriage_2, branch_carriage_3),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self.constants
         arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_span_1_x = k.part_of_span_1_x
-        part_of_span_1_y = k.part_of_span_1_y
-        part_of_span_2_x = k.part_of_span_2_x
-        part_of_span_2_y = k.part_of_span_2_y
-        part_of_span_3_x = k.part_of_span_3_x
-        part_of_span_3_y = k.part_of_span_3_y
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
-        pivot_1_x = k.pivot_1_x
-        pivot_1_y = k.pivot_1_y
-        pivot_2_x = k.pivot_2_x
-        pivot_2_y = k.pivot_2_y
-        pivot_3_x = k.pivot_3_x
-        pivot_3_y = k.pivot_3_y
+        arm_length_squared_times_rounding, min_type2_margin = k.arm_length_squared_times_rounding, k.min_type2_margin
+        offset_a1, offset_a2, offset_a3, part_of_span_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_span_1_x
+        part_of_span_1_y, part_of_span_2_x = k.part_of_span_1_y, k.part_of_span_2_x
+        part_of_span_2_y, part_of_span_3_x = k.part_of_span_2_y, k.part_of_span_3_x
+        part_of_span_3_y, part_of_type2_rods_coplanar = k.part_of_span_3_y, k.part_of_type2_rods_coplanar
+        pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
+        pivot_3_x, pivot_3_y = k.pivot_3_x, k.pivot_3_y
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         span_1_x = x - part_of_span_1_x  # rod 1
         span_1_y = y - part_of_span_1_y  # rod 1
         # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
+        root_square_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
         # rod 1 cannot reach
         require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_2_x = x - part_of_span_2_x  # rod 2
         span_2_y = y - part_of_span_2_y  # rod 2
         # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
+        root_square_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
         # rod 2 cannot reach
         require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_3_x = x - part_of_span_3_x  # rod 3
         span_3_y = y - part_of_span_3_y  # rod 3
         # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
+        root_square_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         # rod 3 cannot reach
         require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
-        a1 = z + root(root_square_a1)*sigma_carriage_1
+        a1 = z + root(root_square_a1) * sigma_carriage_1
         rod_1_z = z - a1
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        a2 = z + root(root_square_a2)*sigma_carriage_2
+        a2 = z + root(root_square_a2) * sigma_carriage_2
         rod_2_z = z - a2
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        a3 = z + root(root_square_a3)*sigma_carriage_3
+        a3 = z + root(root_square_a3) * sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
             -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z - rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y)
-                - (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
+                (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+                - rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+                - (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * rod_1_y
             )
-            *part_of_type2_rods_coplanar
+            * part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         require(status, type2_rods_coplanar >= min_type2_margin, Status.UNREACHABLE)
@@ -196,12 +164,8 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
+        highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
+        lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -212,49 +176,38 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
         k = self.constants
         arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_span_1_x = k.part_of_span_1_x
-        part_of_span_1_y = k.part_of_span_1_y
-        part_of_span_2_x = k.part_of_span_2_x
-        part_of_span_2_y = k.part_of_span_2_y
-        part_of_span_3_x = k.part_of_span_3_x
-        part_of_span_3_y = k.part_of_span_3_y
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
-        pivot_1_x = k.pivot_1_x
-        pivot_1_y = k.pivot_1_y
-        pivot_2_x = k.pivot_2_x
-        pivot_2_y = k.pivot_2_y
-        pivot_3_x = k.pivot_3_x
-        pivot_3_y = k.pivot_3_y
+        arm_length_squared_times_rounding, min_type2_margin = k.arm_length_squared_times_rounding, k.min_type2_margin
+        offset_a1, offset_a2, offset_a3, part_of_span_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_span_1_x
+        part_of_span_1_y, part_of_span_2_x = k.part_of_span_1_y, k.part_of_span_2_x
+        part_of_span_2_y, part_of_span_3_x = k.part_of_span_2_y, k.part_of_span_3_x
+        part_of_span_3_y, part_of_type2_rods_coplanar = k.part_of_span_3_y, k.part_of_type2_rods_coplanar
+        pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
+        pivot_3_x, pivot_3_y = k.pivot_3_x, k.pivot_3_y
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         span_1_x = x - part_of_span_1_x  # rod 1
         span_1_y = y - part_of_span_1_y  # rod 1
         # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
+        root_square_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
         # rod 1 cannot reach
         require(status, root_square_a1 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_2_x = x - part_of_span_2_x  # rod 2
         span_2_y = y - part_of_span_2_y  # rod 2
         # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
+        root_square_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
         # rod 2 cannot reach
         require(status, root_square_a2 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         span_3_x = x - part_of_span_3_x  # rod 3
         span_3_y = y - part_of_span_3_y  # rod 3
         # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
+        root_square_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         # rod 3 cannot reach
         require(status, root_square_a3 >= -arm_length_squared_times_rounding, Status.UNREACHABLE)
         rod_1_x = x - pivot_1_x
@@ -271,11 +224,11 @@ class ArrayPrograms(Programs):
         rod_3_z_above = z - a3_above
         type2_rods_coplanar_above_above_above = (
             -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
+                (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z_above
+                - rod_1_x * (rod_2_y * rod_3_z_above - rod_2_z_above * rod_3_y)
+                - (rod_2_z_above * rod_3_x - rod_2_x * rod_3_z_above) * rod_1_y
             )
-            *part_of_type2_rods_coplanar
+            * part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = select(type2_rods_coplanar_above_above_above >= min_type2_margin, 0, 3)
@@ -286,11 +239,11 @@ class ArrayPrograms(Programs):
         rod_3_z_below = z - a3_below
         type2_rods_coplanar_above_above_below = (
             -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
+                (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z_above
+                - rod_1_x * (rod_2_y * rod_3_z_below - rod_2_z_above * rod_3_y)
+                - (rod_2_z_above * rod_3_x - rod_2_x * rod_3_z_below) * rod_1_y
             )
-            *part_of_type2_rods_coplanar
+            * part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0, 3)
@@ -299,22 +252,22 @@ class ArrayPrograms(Programs):
         rod_2_z_below = z - a2_below
         type2_rods_coplanar_above_below_above = (
             -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
+                (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z_above
+                - rod_1_x * (rod_2_y * rod_3_z_above - rod_2_z_below * rod_3_y)
+                - (rod_2_z_below * rod_3_x - rod_2_x * rod_3_z_above) * rod_1_y
             )
-            *part_of_type2_rods_coplanar
+            * part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0, 3)
         axis_a2_below = a2_below + offset_a2
         type2_rods_coplanar_above_below_below = (
             -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_above
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
+                (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z_above
+                - rod_1_x * (rod_2_y * rod_3_z_below - rod_2_z_below * rod_3_y)
+                - (rod_2_z_below * rod_3_x - rod_2_x * rod_3_z_below) * rod_1_y
             )
-            *part_of_type2_rods_coplanar
+            * part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0, 3)
@@ -322,42 +275,42 @@ class ArrayPrograms(Programs):
         rod_1_z_below = z - a1_below
         type2_rods_coplanar_below_above_above = (
             -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
+                (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z_below
+                - rod_1_x * (rod_2_y * rod_3_z_above - rod_2_z_above * rod_3_y)
+                - (rod_2_z_above * rod_3_x - rod_2_x * rod_3_z_above) * rod_1_y
             )
-            *part_of_type2_rods_coplanar
+            * part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0, 3)
         axis_a1_below = a1_below + offset_a1
         type2_rods_coplanar_below_above_below = (
             -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_above*rod_3_y)
-                - (rod_2_z_above*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
+                (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z_below
+                - rod_1_x * (rod_2_y * rod_3_z_below - rod_2_z_above * rod_3_y)
+                - (rod_2_z_above * rod_3_x - rod_2_x * rod_3_z_below) * rod_1_y
             )
-            *part_of_type2_rods_coplanar
+            * part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0, 3)
         type2_rods_coplanar_below_below_above = (
             -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_above - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_above)*rod_1_y
+                (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z_below
+                - rod_1_x * (rod_2_y * rod_3_z_above - rod_2_z_below * rod_3_y)
+                - (rod_2_z_below * rod_3_x - rod_2_x * rod_3_z_above) * rod_1_y
             )
-            *part_of_type2_rods_coplanar
+            * part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0, 3)
         type2_rods_coplanar_below_below_below = (
             -(
-                (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z_below
-                - rod_1_x*(rod_2_y*rod_3_z_below - rod_2_z_below*rod_3_y)
-                - (rod_2_z_below*rod_3_x - rod_2_x*rod_3_z_below)*rod_1_y
+                (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z_below
+                - rod_1_x * (rod_2_y * rod_3_z_below - rod_2_z_below * rod_3_y)
+                - (rod_2_z_below * rod_3_x - rod_2_x * rod_3_z_below) * rod_1_y
             )
-            *part_of_type2_rods_coplanar
+            * part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = select(type2_rods_coplanar_below_below_below >= min_type2_margin, 0, 3)

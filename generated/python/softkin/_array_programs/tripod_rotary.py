@@ -46,20 +46,12 @@ class ArrayPrograms(Programs):
         k = self.constants
         arm_length_1 = k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_2 = k.arm_length_2
-        arm_length_2_squared = k.arm_length_2_squared
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
-        fixed_length_2 = k.fixed_length_2
-        half_arm_length_1 = k.half_arm_length_1
-        half_by_arm_length_2 = k.half_by_arm_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
+        arm_length_2, arm_length_2_squared = k.arm_length_2, k.arm_length_2_squared
+        arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
+        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
+        half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
+        offset_a2, offset_a3, part_of_normal_divisor = k.offset_a2, k.offset_a3, k.part_of_normal_divisor
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -67,79 +59,76 @@ class ArrayPrograms(Programs):
             (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
             Status.BAD_INPUT,
         )
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2  # rod 2
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y  # rod 3
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
+        pivot_1_z = fixed_length_2 - arm_length_1 * sin_a1  # rod 1
         sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
+        pivot_2_z = fixed_length_2 - arm_length_1 * sin_a2  # rod 2
         apart_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
+        pivot_3_z = fixed_length_2 - arm_length_1 * sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
-        normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
+        normal_x = apart_3_z * pivot_2_y - apart_2_z * pivot_3_y
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
-        normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
-        normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # normal to the centres
+        normal_y = apart_2_z * apart_3_x - apart_2_x * apart_3_z
+        normal_z = apart_2_x * pivot_3_y - apart_3_x * pivot_2_y
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > part_of_normal_divisor, Status.IMPOSSIBLE)
         # how far centre 2 draws the foot
-        share_2 = 0.5*(apart_2_x*apart_2_x + apart_2_z*apart_2_z + pivot_2_y*pivot_2_y)
+        share_2 = 0.5 * (apart_2_x * apart_2_x + apart_2_z * apart_2_z + pivot_2_y * pivot_2_y)
         # how far centre 3 draws the foot
-        share_3 = 0.5*(apart_3_x*apart_3_x + apart_3_z*apart_3_z + pivot_3_y*pivot_3_y)
+        share_3 = 0.5 * (apart_3_x * apart_3_x + apart_3_z * apart_3_z + pivot_3_y * pivot_3_y)
         normal_divisor = select(normal_square > part_of_normal_divisor, normal_square, 1.0)
-        one_by_normal_square = 1.0/normal_divisor
-        foot_x = (
-            one_by_normal_square
-            *((normal_z*pivot_3_y - apart_3_z*normal_y)*share_2 + (apart_2_z*normal_y - normal_z*pivot_2_y)*share_3)
+        one_by_normal_square = 1.0 / normal_divisor
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - apart_3_z * normal_y) * share_2
+            + (apart_2_z * normal_y - normal_z * pivot_2_y) * share_3
         )
-        foot_y = (
-            one_by_normal_square
-            *((apart_3_z*normal_x - apart_3_x*normal_z)*share_2 + (apart_2_x*normal_z - apart_2_z*normal_x)*share_3)
+        foot_y = one_by_normal_square * (
+            (apart_3_z * normal_x - apart_3_x * normal_z) * share_2
+            + (apart_2_x * normal_z - apart_2_z * normal_x) * share_3
         )
-        foot_z = (
-            one_by_normal_square
-            *((apart_3_x*normal_y - normal_x*pivot_3_y)*share_2 + (normal_x*pivot_2_y - apart_2_x*normal_y)*share_3)
+        foot_z = one_by_normal_square * (
+            (apart_3_x * normal_y - normal_x * pivot_3_y) * share_2
+            + (normal_x * pivot_2_y - apart_2_x * normal_y) * share_3
         )
         # the square of the height over the centres
-        height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_2_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         require(status, height_square >= -arm_length_2_squared_times_rounding, Status.IMPOSSIBLE)
-        rise = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        y = foot_y + normal_y*rise
-        z = foot_z + pivot_1_z + normal_z*rise
+        rise = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + normal_x * rise
+        y = foot_y + normal_y * rise
+        z = foot_z + pivot_1_z + normal_z * rise
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
         span_1_z = z - fixed_length_2  # rod 1
-        branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
+        branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / arm_length_2
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y  # rod 2
         root_of_3_2 = root(3.0)
-        branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
+        branch_knee_2 = ((root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2) * half_by_arm_length_2
         span_3_y = part_of_pivot_2_y + y  # rod 3
-        branch_knee_3 = ((-span_2_x - root_of_3_2*span_3_y)*sin_a3 - 2.0*span_1_z*cos_a3)*half_by_arm_length_2
+        branch_knee_3 = ((-span_2_x - root_of_3_2 * span_3_y) * sin_a3 - 2.0 * span_1_z * cos_a3) * half_by_arm_length_2
         return (
-            (
-                (x, y, z),
-                ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-                (branch_knee_1, branch_knee_2, branch_knee_3),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            (branch_knee_1, branch_knee_2, branch_knee_3),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -149,147 +138,134 @@ class ArrayPrograms(Programs):
         k = self.constants
         arm_length_1 = k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_1_times_shortest_link = k.arm_length_1_times_shortest_link
-        arm_length_2 = k.arm_length_2
-        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
-        fixed_length_2 = k.fixed_length_2
-        half_arm_length_1 = k.half_arm_length_1
-        half_by_arm_length_2 = k.half_by_arm_length_2
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_divisor_a2 = k.part_of_divisor_a2
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
+        arm_length_1_times_shortest_link, arm_length_2 = k.arm_length_1_times_shortest_link, k.arm_length_2
+        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
+        half_arm_length_1, half_by_arm_length_2, mid_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.mid_a1
+        mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
+        offset_a2, offset_a3, part_of_divisor_a2 = k.offset_a2, k.offset_a3, k.part_of_divisor_a2
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
         part_of_scaled_cosine_a1 = k.part_of_scaled_cosine_a1
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
-        sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        twice_arm_length_1 = k.twice_arm_length_1
+        sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
+        single_a3, twice_arm_length_1 = k.single_a3, k.twice_arm_length_1
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
         span_1_z = z - fixed_length_2  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        effective_a1 = sqrt(span_1_x * span_1_x + span_1_z * span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > arm_length_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > arm_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
-        part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z)*z - part_of_scaled_cosine_a1
+        swing_scale_a1 = divisor_a1 * twice_arm_length_1  # a1: law of cosines in the rod 1 equation
+        part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z) * z - part_of_scaled_cosine_a1
         # cosine times the scale, seen from the origin
-        scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
+        scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
         one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
         one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, sine_square_a1 >= -1e-12 * swing_scale_a1 * swing_scale_a1, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y  # rod 2
         root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2*span_2_y
-        across_a2 = 2.0*span_1_z
-        across_a2_squared = across_a2*across_a2
-        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length that the angle turns
+        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        across_a2 = 2.0 * span_1_z
+        across_a2_squared = across_a2 * across_a2
+        effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > part_of_divisor_a2, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > part_of_divisor_a2, effective_a2, 1.0)
-        swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
+        swing_scale_a2 = arm_length_1 * divisor_a2  # a2: law of cosines in the rod 2 equation
+        part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x) * x
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
+        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y) * y
         one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
         one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -1e-12 * swing_scale_a2 * swing_scale_a2, Status.UNREACHABLE)
         span_3_y = part_of_pivot_2_y + y  # rod 3
-        along_a3 = span_2_x + root_of_3_2*span_3_y
-        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length that the angle turns
+        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > part_of_divisor_a2, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > part_of_divisor_a2, effective_a3, 1.0)
-        swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
+        swing_scale_a3 = arm_length_1 * divisor_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
-        scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
+        scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y) * y - part_of_scaled_cosine_a2
         one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
         one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
+        require(status, sine_square_a3 >= -1e-12 * swing_scale_a3 * swing_scale_a3, Status.UNREACHABLE)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
-        cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/divisor_a1
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / sum_a1
+        sin_swing_a1 = 2.0 * root(sine_square_a1) * sigma_knee_1 / sum_a1
+        cos_a1 = (span_1_x * cos_swing_a1 - span_1_z * sin_swing_a1) / divisor_a1
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
-        sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
+        sin_a1 = (span_1_z * cos_swing_a1 + span_1_x * sin_swing_a1) / divisor_a1
+        pivot_1_z = fixed_length_2 - arm_length_1 * sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
-        cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/divisor_a2
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_knee_2 / sum_a2
+        cos_a2 = (across_a2 * sin_swing_a2 + along_a2 * cos_swing_a2) / divisor_a2
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2  # rod 2
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
-        sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/divisor_a2
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
+        sin_a2 = (along_a2 * sin_swing_a2 - across_a2 * cos_swing_a2) / divisor_a2
+        pivot_2_z = fixed_length_2 - arm_length_1 * sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/sum_a3
-        cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/divisor_a3
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / sum_a3
+        sin_swing_a3 = -2.0 * root(sine_square_a3) * sigma_knee_3 / sum_a3
+        cos_a3 = (across_a2 * sin_swing_a3 + along_a3 * cos_swing_a3) / divisor_a3
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y  # rod 3
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y  # rod 3
         rod_3_y = y - pivot_3_y
-        sin_a3 = (along_a3*sin_swing_a3 - across_a2*cos_swing_a3)/divisor_a3
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
+        sin_a3 = (along_a3 * sin_swing_a3 - across_a2 * cos_swing_a3) / divisor_a3
+        pivot_3_z = fixed_length_2 - arm_length_1 * sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
-        type2_rods_coplanar = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-                + (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
-            )
+        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+            + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         require(status, type2_rods_coplanar >= min_type2_margin, Status.UNREACHABLE)
         # ball joint of rod 1
-        require(status, absolute(y)/arm_length_2 <= sin_max_angle_ball_joint, Status.UNREACHABLE)
-        part = root_of_3_times_half_by_arm_length_2*x
-        half_by_arm_length_2_times_y = half_by_arm_length_2*y
+        require(status, absolute(y) / arm_length_2 <= sin_max_angle_ball_joint, Status.UNREACHABLE)
+        part = root_of_3_times_half_by_arm_length_2 * x
+        half_by_arm_length_2_times_y = half_by_arm_length_2 * y
         # ball joint of rod 2
         require(status, absolute(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 3
         require(status, absolute(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: its turn
         return (axis_a1, axis_a2, axis_a3), status
 
@@ -297,12 +273,8 @@ class ArrayPrograms(Programs):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
+        highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
+        lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
         status = passed(axes)
         # limits of A1
         require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
@@ -313,7 +285,7 @@ class ArrayPrograms(Programs):
         return status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
@@ -322,243 +294,209 @@ class ArrayPrograms(Programs):
         k = self.constants
         arm_length_1 = k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_1_times_shortest_link = k.arm_length_1_times_shortest_link
-        arm_length_2 = k.arm_length_2
-        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
-        fixed_length_2 = k.fixed_length_2
-        half_arm_length_1 = k.half_arm_length_1
-        half_by_arm_length_2 = k.half_by_arm_length_2
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_divisor_a2 = k.part_of_divisor_a2
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
+        arm_length_1_times_shortest_link, arm_length_2 = k.arm_length_1_times_shortest_link, k.arm_length_2
+        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
+        half_arm_length_1, half_by_arm_length_2, mid_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.mid_a1
+        mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
+        offset_a2, offset_a3, part_of_divisor_a2 = k.offset_a2, k.offset_a3, k.part_of_divisor_a2
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
         part_of_scaled_cosine_a1 = k.part_of_scaled_cosine_a1
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
-        sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        twice_arm_length_1 = k.twice_arm_length_1
+        sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
+        single_a3, twice_arm_length_1 = k.single_a3, k.twice_arm_length_1
         status = passed(position)
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
+            (absolute(ref_a1) <= 1e9)
+            & (absolute(ref_a2) <= 1e9)
+            & (absolute(ref_a3) <= 1e9)
+            & (absolute(x) <= 1e9)
+            & (absolute(y) <= 1e9)
+            & (absolute(z) <= 1e9),
             Status.BAD_INPUT,
         )
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1
         span_1_z = z - fixed_length_2  # rod 1
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        effective_a1 = sqrt(span_1_x * span_1_x + span_1_z * span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > arm_length_1_times_shortest_link, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > arm_length_1_times_shortest_link, effective_a1, 1.0)
-        swing_scale_a1 = divisor_a1*twice_arm_length_1  # a1: law of cosines in the rod 1 equation
-        part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z)*z - part_of_scaled_cosine_a1
+        swing_scale_a1 = divisor_a1 * twice_arm_length_1  # a1: law of cosines in the rod 1 equation
+        part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z) * z - part_of_scaled_cosine_a1
         # cosine times the scale, seen from the origin
-        scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
+        scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
         one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
         one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, sine_square_a1 >= -1e-12 * swing_scale_a1 * swing_scale_a1, Status.UNREACHABLE)
         span_2_x = x - part_of_pivot_2_x  # rod 2
         span_2_y = y - part_of_pivot_2_y  # rod 2
         root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2*span_2_y
-        across_a2 = 2.0*span_1_z
-        across_a2_squared = across_a2*across_a2
-        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length that the angle turns
+        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        across_a2 = 2.0 * span_1_z
+        across_a2_squared = across_a2 * across_a2
+        effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > part_of_divisor_a2, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > part_of_divisor_a2, effective_a2, 1.0)
-        swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
+        swing_scale_a2 = arm_length_1 * divisor_a2  # a2: law of cosines in the rod 2 equation
+        part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x) * x
         # cosine times the scale, seen from the origin
-        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y)*y
+        scaled_cosine_a2 = -part_of_scaled_cosine_a2 - (part_of_pivot_2_y - span_2_y) * y
         one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
         one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -1e-12 * swing_scale_a2 * swing_scale_a2, Status.UNREACHABLE)
         span_3_y = part_of_pivot_2_y + y  # rod 3
-        along_a3 = span_2_x + root_of_3_2*span_3_y
-        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length that the angle turns
+        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > part_of_divisor_a2, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > part_of_divisor_a2, effective_a3, 1.0)
-        swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
+        swing_scale_a3 = arm_length_1 * divisor_a3  # a3: law of cosines in the rod 3 equation
         # cosine times the scale, seen from the origin
-        scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
+        scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y) * y - part_of_scaled_cosine_a2
         one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
         one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
+        require(status, sine_square_a3 >= -1e-12 * swing_scale_a3 * swing_scale_a3, Status.UNREACHABLE)
         # ball joint of rod 1
-        require(status, absolute(y)/arm_length_2 <= sin_max_angle_ball_joint, Status.UNREACHABLE)
-        part = root_of_3_times_half_by_arm_length_2*x
-        half_by_arm_length_2_times_y = half_by_arm_length_2*y
+        require(status, absolute(y) / arm_length_2 <= sin_max_angle_ball_joint, Status.UNREACHABLE)
+        part = root_of_3_times_half_by_arm_length_2 * x
+        half_by_arm_length_2_times_y = half_by_arm_length_2 * y
         # ball joint of rod 2
         require(status, absolute(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 3
         require(status, absolute(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
         sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
-        sin_swing_a1_outward = 2.0*root(sine_square_a1)/sum_a1
-        cos_a1_outward = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_outward = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1_outward  # rod 1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / sum_a1
+        sin_swing_a1_outward = 2.0 * root(sine_square_a1) / sum_a1
+        cos_a1_outward = (span_1_x * cos_swing_a1 - span_1_z * sin_swing_a1_outward) / divisor_a1
+        pivot_1_x_outward = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1_outward  # rod 1
         rod_1_x_outward = x - pivot_1_x_outward
-        sin_a1_outward = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1_outward)/divisor_a1
-        pivot_1_z_outward = fixed_length_2 - arm_length_1*sin_a1_outward  # rod 1
+        sin_a1_outward = (span_1_z * cos_swing_a1 + span_1_x * sin_swing_a1_outward) / divisor_a1
+        pivot_1_z_outward = fixed_length_2 - arm_length_1 * sin_a1_outward  # rod 1
         rod_1_z_outward = z - pivot_1_z_outward
         both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
         sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
-        sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
-        cos_a2_outward = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2_inward)/divisor_a2
-        pivot_2_x_outward = part_of_pivot_2_x + half_arm_length_1*cos_a2_outward  # rod 2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / sum_a2
+        sin_swing_a2_inward = 2.0 * root(sine_square_a2) / sum_a2
+        cos_a2_outward = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2_inward) / divisor_a2
+        pivot_2_x_outward = part_of_pivot_2_x + half_arm_length_1 * cos_a2_outward  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward
-        pivot_2_y_outward = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2_outward  # rod 2
+        pivot_2_y_outward = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2_outward  # rod 2
         rod_2_y_outward = y - pivot_2_y_outward
-        sin_a2_outward = (-across_a2*cos_swing_a2 - along_a2*sin_swing_a2_inward)/divisor_a2
-        pivot_2_z_outward = fixed_length_2 - arm_length_1*sin_a2_outward  # rod 2
+        sin_a2_outward = (-across_a2 * cos_swing_a2 - along_a2 * sin_swing_a2_inward) / divisor_a2
+        pivot_2_z_outward = fixed_length_2 - arm_length_1 * sin_a2_outward  # rod 2
         rod_2_z_outward = z - pivot_2_z_outward
         both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
         sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
-        sin_swing_a3_inward = 2.0*root(sine_square_a3)/sum_a3
-        cos_a3_outward = (along_a3*cos_swing_a3 - across_a2*sin_swing_a3_inward)/divisor_a3
-        pivot_3_x_outward = part_of_pivot_2_x + half_arm_length_1*cos_a3_outward  # rod 3
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / sum_a3
+        sin_swing_a3_inward = 2.0 * root(sine_square_a3) / sum_a3
+        cos_a3_outward = (along_a3 * cos_swing_a3 - across_a2 * sin_swing_a3_inward) / divisor_a3
+        pivot_3_x_outward = part_of_pivot_2_x + half_arm_length_1 * cos_a3_outward  # rod 3
         rod_3_x_outward = x - pivot_3_x_outward
-        pivot_3_y_outward = arm_length_1_times_root_of_3_times_half*cos_a3_outward - part_of_pivot_2_y  # rod 3
+        pivot_3_y_outward = arm_length_1_times_root_of_3_times_half * cos_a3_outward - part_of_pivot_2_y  # rod 3
         rod_3_y_outward = y - pivot_3_y_outward
-        sin_a3_outward = (-across_a2*cos_swing_a3 - along_a3*sin_swing_a3_inward)/divisor_a3
-        pivot_3_z_outward = fixed_length_2 - arm_length_1*sin_a3_outward  # rod 3
+        sin_a3_outward = (-across_a2 * cos_swing_a3 - along_a3 * sin_swing_a3_inward) / divisor_a3
+        pivot_3_z_outward = fixed_length_2 - arm_length_1 * sin_a3_outward  # rod 3
         rod_3_z_outward = z - pivot_3_z_outward
-        type2_rods_coplanar_outward_outward_outward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_outward*rod_3_y_outward - rod_2_y_outward*rod_3_z_outward)*rod_1_x_outward
-                + (rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_y_outward)*rod_1_z_outward
-                + (rod_2_x_outward*rod_3_z_outward - rod_2_z_outward*rod_3_x_outward)*y
-            )
+        type2_rods_coplanar_outward_outward_outward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_outward * rod_3_y_outward - rod_2_y_outward * rod_3_z_outward) * rod_1_x_outward
+            + (rod_2_y_outward * rod_3_x_outward - rod_2_x_outward * rod_3_y_outward) * rod_1_z_outward
+            + (rod_2_x_outward * rod_3_z_outward - rod_2_z_outward * rod_3_x_outward) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_outward = select(
-            type2_rods_coplanar_outward_outward_outward >= min_type2_margin, 0, 3,
-        )
+        refusal_outward_outward_outward = select(type2_rods_coplanar_outward_outward_outward >= min_type2_margin, 0, 3)
         open_a1 = select(single_a1, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)  # A1: its turn
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        # A1: its turn
+        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)
         open_a2 = select(single_a2, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)  # A2: its turn
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        # A2: its turn
+        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)
         open_a3 = select(single_a3, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)  # A3: its turn
-        cos_a3_inward = (across_a2*sin_swing_a3_inward + along_a3*cos_swing_a3)/divisor_a3
-        pivot_3_x_inward = part_of_pivot_2_x + half_arm_length_1*cos_a3_inward  # rod 3
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        # A3: its turn
+        axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)
+        cos_a3_inward = (across_a2 * sin_swing_a3_inward + along_a3 * cos_swing_a3) / divisor_a3
+        pivot_3_x_inward = part_of_pivot_2_x + half_arm_length_1 * cos_a3_inward  # rod 3
         rod_3_x_inward = x - pivot_3_x_inward
-        pivot_3_y_inward = arm_length_1_times_root_of_3_times_half*cos_a3_inward - part_of_pivot_2_y  # rod 3
+        pivot_3_y_inward = arm_length_1_times_root_of_3_times_half * cos_a3_inward - part_of_pivot_2_y  # rod 3
         rod_3_y_inward = y - pivot_3_y_inward
-        sin_a3_inward = (along_a3*sin_swing_a3_inward - across_a2*cos_swing_a3)/divisor_a3
-        pivot_3_z_inward = fixed_length_2 - arm_length_1*sin_a3_inward  # rod 3
+        sin_a3_inward = (along_a3 * sin_swing_a3_inward - across_a2 * cos_swing_a3) / divisor_a3
+        pivot_3_z_inward = fixed_length_2 - arm_length_1 * sin_a3_inward  # rod 3
         rod_3_z_inward = z - pivot_3_z_inward
-        type2_rods_coplanar_outward_outward_inward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_outward*rod_3_y_inward - rod_2_y_outward*rod_3_z_inward)*rod_1_x_outward
-                + (rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_y_inward)*rod_1_z_outward
-                + (rod_2_x_outward*rod_3_z_inward - rod_2_z_outward*rod_3_x_inward)*y
-            )
+        type2_rods_coplanar_outward_outward_inward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_outward * rod_3_y_inward - rod_2_y_outward * rod_3_z_inward) * rod_1_x_outward
+            + (rod_2_y_outward * rod_3_x_inward - rod_2_x_outward * rod_3_y_inward) * rod_1_z_outward
+            + (rod_2_x_outward * rod_3_z_inward - rod_2_z_outward * rod_3_x_inward) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = select(type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0, 3)
         axis_a3_inward = nearest_period(offset_a3 + degrees(sin_a3_inward, cos_a3_inward), near_a3)  # A3: its turn
-        cos_a2_inward = (across_a2*sin_swing_a2_inward + along_a2*cos_swing_a2)/divisor_a2
-        pivot_2_x_inward = part_of_pivot_2_x + half_arm_length_1*cos_a2_inward  # rod 2
+        cos_a2_inward = (across_a2 * sin_swing_a2_inward + along_a2 * cos_swing_a2) / divisor_a2
+        pivot_2_x_inward = part_of_pivot_2_x + half_arm_length_1 * cos_a2_inward  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
-        pivot_2_y_inward = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2_inward  # rod 2
+        pivot_2_y_inward = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2_inward  # rod 2
         rod_2_y_inward = y - pivot_2_y_inward
-        sin_a2_inward = (along_a2*sin_swing_a2_inward - across_a2*cos_swing_a2)/divisor_a2
-        pivot_2_z_inward = fixed_length_2 - arm_length_1*sin_a2_inward  # rod 2
+        sin_a2_inward = (along_a2 * sin_swing_a2_inward - across_a2 * cos_swing_a2) / divisor_a2
+        pivot_2_z_inward = fixed_length_2 - arm_length_1 * sin_a2_inward  # rod 2
         rod_2_z_inward = z - pivot_2_z_inward
-        type2_rods_coplanar_outward_inward_outward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_inward*rod_3_y_outward - rod_2_y_inward*rod_3_z_outward)*rod_1_x_outward
-                + (rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_y_outward)*rod_1_z_outward
-                + (rod_2_x_inward*rod_3_z_outward - rod_2_z_inward*rod_3_x_outward)*y
-            )
+        type2_rods_coplanar_outward_inward_outward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_inward * rod_3_y_outward - rod_2_y_inward * rod_3_z_outward) * rod_1_x_outward
+            + (rod_2_y_inward * rod_3_x_outward - rod_2_x_inward * rod_3_y_outward) * rod_1_z_outward
+            + (rod_2_x_inward * rod_3_z_outward - rod_2_z_inward * rod_3_x_outward) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = select(type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0, 3)
         axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)  # A2: its turn
-        type2_rods_coplanar_outward_inward_inward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_inward*rod_3_y_inward - rod_2_y_inward*rod_3_z_inward)*rod_1_x_outward
-                + (rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_y_inward)*rod_1_z_outward
-                + (rod_2_x_inward*rod_3_z_inward - rod_2_z_inward*rod_3_x_inward)*y
-            )
+        type2_rods_coplanar_outward_inward_inward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_inward * rod_3_y_inward - rod_2_y_inward * rod_3_z_inward) * rod_1_x_outward
+            + (rod_2_y_inward * rod_3_x_inward - rod_2_x_inward * rod_3_y_inward) * rod_1_z_outward
+            + (rod_2_x_inward * rod_3_z_inward - rod_2_z_inward * rod_3_x_inward) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = select(type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0, 3)
-        cos_a1_inward = (span_1_x*cos_swing_a1 + span_1_z*sin_swing_a1_outward)/divisor_a1
-        pivot_1_x_inward = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1_inward  # rod 1
+        cos_a1_inward = (span_1_x * cos_swing_a1 + span_1_z * sin_swing_a1_outward) / divisor_a1
+        pivot_1_x_inward = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1_inward  # rod 1
         rod_1_x_inward = x - pivot_1_x_inward
-        sin_a1_inward = (span_1_z*cos_swing_a1 - span_1_x*sin_swing_a1_outward)/divisor_a1
-        pivot_1_z_inward = fixed_length_2 - arm_length_1*sin_a1_inward  # rod 1
+        sin_a1_inward = (span_1_z * cos_swing_a1 - span_1_x * sin_swing_a1_outward) / divisor_a1
+        pivot_1_z_inward = fixed_length_2 - arm_length_1 * sin_a1_inward  # rod 1
         rod_1_z_inward = z - pivot_1_z_inward
-        type2_rods_coplanar_inward_outward_outward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_outward*rod_3_y_outward - rod_2_y_outward*rod_3_z_outward)*rod_1_x_inward
-                + (rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_y_outward)*rod_1_z_inward
-                + (rod_2_x_outward*rod_3_z_outward - rod_2_z_outward*rod_3_x_outward)*y
-            )
+        type2_rods_coplanar_inward_outward_outward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_outward * rod_3_y_outward - rod_2_y_outward * rod_3_z_outward) * rod_1_x_inward
+            + (rod_2_y_outward * rod_3_x_outward - rod_2_x_outward * rod_3_y_outward) * rod_1_z_inward
+            + (rod_2_x_outward * rod_3_z_outward - rod_2_z_outward * rod_3_x_outward) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = select(type2_rods_coplanar_inward_outward_outward >= min_type2_margin, 0, 3)
         axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)  # A1: its turn
-        type2_rods_coplanar_inward_outward_inward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_outward*rod_3_y_inward - rod_2_y_outward*rod_3_z_inward)*rod_1_x_inward
-                + (rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_y_inward)*rod_1_z_inward
-                + (rod_2_x_outward*rod_3_z_inward - rod_2_z_outward*rod_3_x_inward)*y
-            )
+        type2_rods_coplanar_inward_outward_inward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_outward * rod_3_y_inward - rod_2_y_outward * rod_3_z_inward) * rod_1_x_inward
+            + (rod_2_y_outward * rod_3_x_inward - rod_2_x_outward * rod_3_y_inward) * rod_1_z_inward
+            + (rod_2_x_outward * rod_3_z_inward - rod_2_z_outward * rod_3_x_inward) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_inward = select(type2_rods_coplanar_inward_outward_inward >= min_type2_margin, 0, 3)
-        type2_rods_coplanar_inward_inward_outward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_inward*rod_3_y_outward - rod_2_y_inward*rod_3_z_outward)*rod_1_x_inward
-                + (rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_y_outward)*rod_1_z_inward
-                + (rod_2_x_inward*rod_3_z_outward - rod_2_z_inward*rod_3_x_outward)*y
-            )
+        type2_rods_coplanar_inward_inward_outward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_inward * rod_3_y_outward - rod_2_y_inward * rod_3_z_outward) * rod_1_x_inward
+            + (rod_2_y_inward * rod_3_x_outward - rod_2_x_inward * rod_3_y_outward) * rod_1_z_inward
+            + (rod_2_x_inward * rod_3_z_outward - rod_2_z_inward * rod_3_x_outward) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_outward = select(type2_rods_coplanar_inward_inward_outward >= min_type2_margin, 0, 3)
-        type2_rods_coplanar_inward_inward_inward = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z_inward*rod_3_y_inward - rod_2_y_inward*rod_3_z_inward)*rod_1_x_inward
-                + (rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_y_inward)*rod_1_z_inward
-                + (rod_2_x_inward*rod_3_z_inward - rod_2_z_inward*rod_3_x_inward)*y
-            )
+        type2_rods_coplanar_inward_inward_inward = -part_of_type2_rods_coplanar * (
+            (rod_2_z_inward * rod_3_y_inward - rod_2_y_inward * rod_3_z_inward) * rod_1_x_inward
+            + (rod_2_y_inward * rod_3_x_inward - rod_2_x_inward * rod_3_y_inward) * rod_1_z_inward
+            + (rod_2_x_inward * rod_3_z_inward - rod_2_z_inward * rod_3_x_inward) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_inward = select(type2_rods_coplanar_inward_inward_inward >= min_type2_margin, 0, 3)

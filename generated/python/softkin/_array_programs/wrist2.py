@@ -44,43 +44,36 @@ class ArrayPrograms(OrientationPrograms):
         """Position, rotation and the signed margin of every branch."""
         axis_a, axis_b = axes
         k = self.constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        roll_axis_offset_x = k.roll_axis_offset_x
-        roll_axis_offset_y = k.roll_axis_offset_y
-        roll_axis_offset_z = k.roll_axis_offset_z
-        tool_length_times_tool_side = k.tool_length_times_tool_side
-        tool_side = k.tool_side
+        offset_a, offset_b, roll_axis_offset_x = k.offset_a, k.offset_b, k.roll_axis_offset_x
+        roll_axis_offset_y, roll_axis_offset_z = k.roll_axis_offset_y, k.roll_axis_offset_z
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9), Status.BAD_INPUT)
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
-        r31_at_b = -tool_side*sin_b
-        r13_at_b = -r31_at_b*cos_a
-        x_at_b = roll_axis_offset_x*cos_a - roll_axis_offset_y*sin_a
-        x = x_at_b + r13_at_b*tool_length_times_tool_side
-        r23_at_b = -r31_at_b*sin_a
-        y_at_b = roll_axis_offset_y*cos_a + roll_axis_offset_x*sin_a
-        y = y_at_b + r23_at_b*tool_length_times_tool_side
+        r31_at_b = -tool_side * sin_b
+        r13_at_b = -r31_at_b * cos_a
+        x_at_b = roll_axis_offset_x * cos_a - roll_axis_offset_y * sin_a
+        x = x_at_b + r13_at_b * tool_length_times_tool_side
+        r23_at_b = -r31_at_b * sin_a
+        y_at_b = roll_axis_offset_y * cos_a + roll_axis_offset_x * sin_a
+        y = y_at_b + r23_at_b * tool_length_times_tool_side
         cos_b = cos(b)
-        z = roll_axis_offset_z + tool_length_times_tool_side*cos_b
-        r11_at_b = cos_a*cos_b
-        r21_at_b = cos_b*sin_a
+        z = roll_axis_offset_z + tool_length_times_tool_side * cos_b
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
         return (
-            (
-                (x, y, z),
-                ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)),
-                (sin_b,),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)),
+            (sin_b,),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
@@ -88,41 +81,33 @@ class ArrayPrograms(OrientationPrograms):
         turn_a, turn_b = turns
         ref_a, ref_b = reference
         k = self.constants
-        mid_a = k.mid_a
-        mid_b = k.mid_b
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        single_a = k.single_a
-        single_b = k.single_b
-        tool_side = k.tool_side
+        mid_a, mid_b, offset_a, offset_b, single_a = k.mid_a, k.mid_b, k.offset_a, k.offset_b, k.single_a
+        single_b, tool_side = k.single_b, k.tool_side
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
-        r13_of_a = r13/tool_side
-        r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        r13_of_a = r13 / tool_side
+        r23_of_a = r23 / tool_side
+        radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # a: direction and distance of a point
 
         def elsewhere_direction_x_a(ref_a: Real) -> Reals:
-            free_a = (ref_a - offset_a)*DEGREE
+            free_a = (ref_a - offset_a) * DEGREE
             direction_x_a = cos(free_a)  # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_y_a = sin(free_a)
             return (direction_x_a, direction_y_a)
 
         # a: polar angle in the r13 and r23 equations; its reference where it is free
-        direction_x_a = sigma_roll*r13_of_a
-        direction_y_a = sigma_roll*r23_of_a
+        direction_x_a = sigma_roll * r13_of_a
+        direction_y_a = sigma_roll * r23_of_a
         direction_x_a, direction_y_a = elsewhere(
-            radius_a > 1e-11,
-            (direction_x_a, direction_y_a),
-            elsewhere_direction_x_a,
-            (ref_a,),
+            radius_a > 1e-11, (direction_x_a, direction_y_a), elsewhere_direction_x_a, (ref_a,)
         )
         open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
-        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
+        near_a = select(turn_a != 0, 360.0 * select(turn_a > 0, turn_a - 1, turn_a), open_a)
         axis_a = nearest_period(offset_a + degrees(direction_y_a, direction_x_a), near_a)  # A: its turn
-        a_radius_of_b = sigma_roll*radius_a
+        a_radius_of_b = sigma_roll * radius_a
         open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
-        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
+        near_b = select(turn_b != 0, 360.0 * select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b = nearest_period(offset_b + degrees(a_radius_of_b, r33), near_b)  # B: its turn
         return (axis_a, axis_b), status
 
@@ -130,10 +115,7 @@ class ArrayPrograms(OrientationPrograms):
         """The test of the limits."""
         axis_a, axis_b = axes
         k = self.constants
-        highest_a = k.highest_a
-        highest_b = k.highest_b
-        lowest_a = k.lowest_a
-        lowest_b = k.lowest_b
+        highest_a, highest_b, lowest_a, lowest_b = k.highest_a, k.highest_b, k.lowest_a, k.lowest_b
         status = passed(axes)
         # limits of A
         require(status, (axis_a >= lowest_a) & (axis_a <= highest_a), Status.UNREACHABLE)
@@ -147,53 +129,46 @@ class ArrayPrograms(OrientationPrograms):
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self.constants
-        roll_axis_offset_z = k.roll_axis_offset_z
-        tool_length_times_tool_side = k.tool_length_times_tool_side
+        roll_axis_offset_z, tool_length_times_tool_side = k.roll_axis_offset_z, k.tool_length_times_tool_side
         status = passed(rotation[0])
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(base_axis_x) <= 1e9) & (absolute(base_axis_y) <= 1e9) & (absolute(base_axis_z) <= 1e9)
-                & (absolute(flange_axis_x) <= 1e9) & (absolute(flange_axis_y) <= 1e9)
-                & (absolute(flange_axis_z) <= 1e9)
-            ),
+            (absolute(base_axis_x) <= 1e9)
+            & (absolute(base_axis_y) <= 1e9)
+            & (absolute(base_axis_z) <= 1e9)
+            & (absolute(flange_axis_x) <= 1e9)
+            & (absolute(flange_axis_y) <= 1e9)
+            & (absolute(flange_axis_z) <= 1e9),
             Status.BAD_INPUT,
         )
-        flange_along = flange_axis_z*roll_axis_offset_z  # what the flange holds, along the axis that it turns about
+        # what the flange holds, along the axis that it turns about
+        flange_along = flange_axis_z * roll_axis_offset_z
         return (
-            (
-                base_axis_x*flange_along + r13*tool_length_times_tool_side,
-                base_axis_y*flange_along + r23*tool_length_times_tool_side,
-                base_axis_z*flange_along + r33*tool_length_times_tool_side,
-            ),
-            status,
-        )
+            base_axis_x * flange_along + r13 * tool_length_times_tool_side,
+            base_axis_y * flange_along + r23 * tool_length_times_tool_side,
+            base_axis_z * flange_along + r33 * tool_length_times_tool_side,
+        ), status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         turn_a, turn_b = turns
         ref_a, ref_b = reference
         k = self.constants
-        mid_a = k.mid_a
-        mid_b = k.mid_b
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        single_a = k.single_a
-        single_b = k.single_b
-        tool_side = k.tool_side
+        mid_a, mid_b, offset_a, offset_b, single_a = k.mid_a, k.mid_b, k.offset_a, k.offset_b, k.single_a
+        single_b, tool_side = k.single_b, k.tool_side
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
-        r13_of_a = r13/tool_side
-        r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        r13_of_a = r13 / tool_side
+        r23_of_a = r23 / tool_side
+        radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # a: direction and distance of a point
 
         def elsewhere_direction_x_a_positive(ref_a: Real) -> Reals:
-            free_a = (ref_a - offset_a)*DEGREE
+            free_a = (ref_a - offset_a) * DEGREE
             # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a_positive = cos(free_a)
             direction_y_a_positive = sin(free_a)
@@ -215,16 +190,13 @@ class ArrayPrograms(OrientationPrograms):
             (ref_a,),
         )
         open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
-        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
+        near_a = select(turn_a != 0, 360.0 * select(turn_a > 0, turn_a - 1, turn_a), open_a)
         # A: its turn
         axis_a_positive = nearest_period(offset_a + degrees(direction_y_a_positive, direction_x_a_positive), near_a)
         open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
-        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
+        near_b = select(turn_b != 0, 360.0 * select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b_positive = nearest_period(offset_b + degrees(radius_a, r33), near_b)  # B: its turn
         # A: its turn
         axis_a_negative = nearest_period(offset_a + degrees(direction_y_a_negative, direction_x_a_negative), near_a)
         axis_b_negative = nearest_period(offset_b + degrees(-radius_a, r33), near_b)  # B: its turn
-        return (
-            ((axis_a_positive, axis_b_positive), status),
-            ((axis_a_negative, axis_b_negative), status),
-        )
+        return (((axis_a_positive, axis_b_positive), status), ((axis_a_negative, axis_b_negative), status))

@@ -44,52 +44,43 @@ class ArrayPrograms(OrientationPrograms):
         """Position, rotation and the signed margin of every branch."""
         axis_a, axis_b, axis_c = axes
         k = self.constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_c = k.offset_c
-        tool_offset_x = k.tool_offset_x
-        tool_offset_y = k.tool_offset_y
-        tool_offset_z = k.tool_offset_z
+        offset_a, offset_b, offset_c, tool_offset_x = k.offset_a, k.offset_b, k.offset_c, k.tool_offset_x
+        tool_offset_y, tool_offset_z = k.tool_offset_y, k.tool_offset_z
         status = passed(axes)
         # numbers of reasonable size
         require(
-            status,
-            (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_c) <= 1e9),
-            Status.BAD_INPUT,
+            status, (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_c) <= 1e9), Status.BAD_INPUT
         )
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         cos_a = cos(a)
-        r13_at_b = -cos_a*sin_b
+        r13_at_b = -cos_a * sin_b
         cos_b = cos(b)
         sin_a = sin(a)
-        r11_at_b = cos_a*cos_b
-        c = DEGREE*(axis_c - offset_c)
+        r11_at_b = cos_a * cos_b
+        c = DEGREE * (axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)
-        r11_at_c = r11_at_b*cos_c - sin_a*sin_c
-        r12_at_c = -cos_c*sin_a - r11_at_b*sin_c
-        x = r11_at_c*tool_offset_x + r12_at_c*tool_offset_y + r13_at_b*tool_offset_z
-        r23_at_b = -sin_a*sin_b
-        r21_at_b = cos_b*sin_a
-        r21_at_c = cos_a*sin_c + r21_at_b*cos_c
-        r22_at_c = cos_a*cos_c - r21_at_b*sin_c
-        y = r21_at_c*tool_offset_x + r22_at_c*tool_offset_y + r23_at_b*tool_offset_z
-        r31_at_c = cos_c*sin_b
-        r32_at_c = -sin_b*sin_c
-        z = tool_offset_z*cos_b + r31_at_c*tool_offset_x + r32_at_c*tool_offset_y
+        r11_at_c = r11_at_b * cos_c - sin_a * sin_c
+        r12_at_c = -cos_c * sin_a - r11_at_b * sin_c
+        x = r11_at_c * tool_offset_x + r12_at_c * tool_offset_y + r13_at_b * tool_offset_z
+        r23_at_b = -sin_a * sin_b
+        r21_at_b = cos_b * sin_a
+        r21_at_c = cos_a * sin_c + r21_at_b * cos_c
+        r22_at_c = cos_a * cos_c - r21_at_b * sin_c
+        y = r21_at_c * tool_offset_x + r22_at_c * tool_offset_y + r23_at_b * tool_offset_z
+        r31_at_c = cos_c * sin_b
+        r32_at_c = -sin_b * sin_c
+        z = tool_offset_z * cos_b + r31_at_c * tool_offset_x + r32_at_c * tool_offset_y
         return (
-            (
-                (x, y, z),
-                ((r11_at_c, r12_at_c, r13_at_b), (r21_at_c, r22_at_c, r23_at_b), (r31_at_c, r32_at_c, cos_b)),
-                (sin_b,),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_c, r12_at_c, r13_at_b), (r21_at_c, r22_at_c, r23_at_b), (r31_at_c, r32_at_c, cos_b)),
+            (sin_b,),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
@@ -97,49 +88,38 @@ class ArrayPrograms(OrientationPrograms):
         turn_a, turn_b, turn_c = turns
         ref_a, ref_b, ref_c = reference
         k = self.constants
-        mid_a = k.mid_a
-        mid_b = k.mid_b
-        mid_c = k.mid_c
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_c = k.offset_c
-        single_a = k.single_a
-        single_b = k.single_b
-        single_c = k.single_c
+        mid_a, mid_b, mid_c, offset_a, offset_b = k.mid_a, k.mid_b, k.mid_c, k.offset_a, k.offset_b
+        offset_c, single_a, single_b, single_c = k.offset_c, k.single_a, k.single_b, k.single_c
         status = passed(position)
         # numbers of reasonable size
         require(
-            status,
-            (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9),
-            Status.BAD_INPUT,
+            status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9), Status.BAD_INPUT
         )
-        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
+        radius_c = sqrt(r31 * r31 + r32 * r32)  # c: direction and distance of a point
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
-            free_c = (ref_c - offset_c)*DEGREE
+            free_c = (ref_c - offset_c) * DEGREE
             direction_x_c = cos(free_c)  # c: polar angle in the r31 and r32 equations; its reference where it is free
             direction_y_c = sin(free_c)
             return (direction_x_c, direction_y_c)
 
-        direction_x_c = sigma_hand*r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
-        direction_y_c = -sigma_hand*r32
+        # c: polar angle in the r31 and r32 equations; its reference where it is free
+        direction_x_c = sigma_hand * r31
+        direction_y_c = -sigma_hand * r32
         direction_x_c, direction_y_c = elsewhere(
-            radius_c > 1e-11,
-            (direction_x_c, direction_y_c),
-            elsewhere_direction_x_c,
-            (ref_c,),
+            radius_c > 1e-11, (direction_x_c, direction_y_c), elsewhere_direction_x_c, (ref_c,)
         )
-        scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
-        direction_y_a = -direction_x_c*r12 - direction_y_c*r11
+        scaled_r22_before_c = direction_x_c * r22 + direction_y_c * r21
+        direction_y_a = -direction_x_c * r12 - direction_y_c * r11
         open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
-        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
+        near_a = select(turn_a != 0, 360.0 * select(turn_a > 0, turn_a - 1, turn_a), open_a)
         axis_a = nearest_period(offset_a + degrees(direction_y_a, scaled_r22_before_c), near_a)  # A: its turn
-        c_radius_of_b = sigma_hand*radius_c
+        c_radius_of_b = sigma_hand * radius_c
         open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
-        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
+        near_b = select(turn_b != 0, 360.0 * select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b = nearest_period(offset_b + degrees(c_radius_of_b, r33), near_b)  # B: its turn
         open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
-        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
+        near_c = select(turn_c != 0, 360.0 * select(turn_c > 0, turn_c - 1, turn_c), open_c)
         axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
         return (axis_a, axis_b, axis_c), status
 
@@ -147,12 +127,8 @@ class ArrayPrograms(OrientationPrograms):
         """The test of the limits."""
         axis_a, axis_b, axis_c = axes
         k = self.constants
-        highest_a = k.highest_a
-        highest_b = k.highest_b
-        highest_c = k.highest_c
-        lowest_a = k.lowest_a
-        lowest_b = k.lowest_b
-        lowest_c = k.lowest_c
+        highest_a, highest_b, highest_c, lowest_a = k.highest_a, k.highest_b, k.highest_c, k.lowest_a
+        lowest_b, lowest_c = k.lowest_b, k.lowest_c
         status = passed(axes)
         # limits of A
         require(status, (axis_a >= lowest_a) & (axis_a <= highest_a), Status.UNREACHABLE)
@@ -166,47 +142,33 @@ class ArrayPrograms(OrientationPrograms):
         """From a flange that turns to the end point."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         k = self.constants
-        tool_offset_x = k.tool_offset_x
-        tool_offset_y = k.tool_offset_y
-        tool_offset_z = k.tool_offset_z
+        tool_offset_x, tool_offset_y, tool_offset_z = k.tool_offset_x, k.tool_offset_y, k.tool_offset_z
         status = passed(rotation[0])
         return (
-            (
-                r11*tool_offset_x + r12*tool_offset_y + r13*tool_offset_z,
-                r21*tool_offset_x + r22*tool_offset_y + r23*tool_offset_z,
-                r31*tool_offset_x + r32*tool_offset_y + r33*tool_offset_z,
-            ),
-            status,
-        )
+            r11 * tool_offset_x + r12 * tool_offset_y + r13 * tool_offset_z,
+            r21 * tool_offset_x + r22 * tool_offset_y + r23 * tool_offset_z,
+            r31 * tool_offset_x + r32 * tool_offset_y + r33 * tool_offset_z,
+        ), status
 
     def every_branch(
-        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs],
+        self, position: Vector, rotation: Rotation, turns: Turns, reference: Reals, signs: Sequence[Signs]
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
         turn_a, turn_b, turn_c = turns
         ref_a, ref_b, ref_c = reference
         k = self.constants
-        mid_a = k.mid_a
-        mid_b = k.mid_b
-        mid_c = k.mid_c
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_c = k.offset_c
-        single_a = k.single_a
-        single_b = k.single_b
-        single_c = k.single_c
+        mid_a, mid_b, mid_c, offset_a, offset_b = k.mid_a, k.mid_b, k.mid_c, k.offset_a, k.offset_b
+        offset_c, single_a, single_b, single_c = k.offset_c, k.single_a, k.single_b, k.single_c
         status = passed(position)
         # numbers of reasonable size
         require(
-            status,
-            (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9),
-            Status.BAD_INPUT,
+            status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9), Status.BAD_INPUT
         )
-        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
+        radius_c = sqrt(r31 * r31 + r32 * r32)  # c: direction and distance of a point
 
         def elsewhere_direction_x_c_down(ref_c: Real) -> Reals:
-            free_c = (ref_c - offset_c)*DEGREE
+            free_c = (ref_c - offset_c) * DEGREE
             # c: polar angle in the r31 and r32 equations; its reference where it is free
             direction_x_c_down = cos(free_c)
             direction_y_c_down = sin(free_c)
@@ -225,26 +187,23 @@ class ArrayPrograms(OrientationPrograms):
             elsewhere_direction_x_c_down,
             (ref_c,),
         )
-        scaled_r22_before_c_down = direction_x_c_down*r22 + direction_y_c_down*r21
-        direction_y_a_down = -direction_x_c_down*r12 - direction_y_c_down*r11
+        scaled_r22_before_c_down = direction_x_c_down * r22 + direction_y_c_down * r21
+        direction_y_a_down = -direction_x_c_down * r12 - direction_y_c_down * r11
         open_a = select(single_a, mid_a, ref_a)  # A: where its turn is open
-        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
+        near_a = select(turn_a != 0, 360.0 * select(turn_a > 0, turn_a - 1, turn_a), open_a)
         # A: its turn
         axis_a_down = nearest_period(offset_a + degrees(direction_y_a_down, scaled_r22_before_c_down), near_a)
         open_b = select(single_b, mid_b, ref_b)  # B: where its turn is open
-        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
+        near_b = select(turn_b != 0, 360.0 * select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b_down = nearest_period(offset_b + degrees(radius_c, r33), near_b)  # B: its turn
         open_c = select(single_c, mid_c, ref_c)  # C: where its turn is open
-        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
+        near_c = select(turn_c != 0, 360.0 * select(turn_c > 0, turn_c - 1, turn_c), open_c)
         # C: its turn
         axis_c_down = nearest_period(offset_c + degrees(direction_y_c_down, direction_x_c_down), near_c)
-        scaled_r22_before_c_up = direction_x_c_up*r22 + direction_y_c_up*r21
-        direction_y_a_up = -direction_x_c_up*r12 - direction_y_c_up*r11
+        scaled_r22_before_c_up = direction_x_c_up * r22 + direction_y_c_up * r21
+        direction_y_a_up = -direction_x_c_up * r12 - direction_y_c_up * r11
         # A: its turn
         axis_a_up = nearest_period(offset_a + degrees(direction_y_a_up, scaled_r22_before_c_up), near_a)
         axis_b_up = nearest_period(offset_b + degrees(-radius_c, r33), near_b)  # B: its turn
         axis_c_up = nearest_period(offset_c + degrees(direction_y_c_up, direction_x_c_up), near_c)  # C: its turn
-        return (
-            ((axis_a_down, axis_b_down, axis_c_down), status),
-            ((axis_a_up, axis_b_up, axis_c_up), status),
-        )
+        return (((axis_a_down, axis_b_down, axis_c_down), status), ((axis_a_up, axis_b_up, axis_c_up), status))
