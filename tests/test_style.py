@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from derive.emit.python.layout import WIDTH
+
 ROOT = Path(__file__).resolve().parents[1]
 IMPORT_LINTER = "from importlinter.cli import lint_imports_command as lint; lint(['--no-cache'])"
 TOOLS = {
@@ -24,6 +26,16 @@ ROOM = 16
 def test_clean(tool: str) -> None:
     done = subprocess.run([sys.executable, *TOOLS[tool]], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_no_generated_line_is_wider_than_a_page() -> None:
+    wide = [
+        f"{path.name}:{number}"
+        for path in sorted((ROOT / "generated/python").rglob("*.py"))
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+        if len(line) > WIDTH
+    ]
+    assert not wide, wide
 
 
 def rooms() -> list[Path]:

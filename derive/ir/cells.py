@@ -1,10 +1,10 @@
 """Cells of a search along one joint, on arrays: what the ends of a cell say of the roots in it, and where it is cut.
 
-A trial is a function of the searched joint: a value that must vanish, with its slope; a guard that is negative where the
-trial has no solution, with its slope; and directions, the cosines and sines of angles that a partial step takes from a
-vector, which turn fast where that vector is short. The two roots under the guard are one curve: where the guard vanishes
-the curve goes over from one to the other. Such an end is looked at in s with joint = end + scale s², s > 0 on the wanted
-side and s < 0 on the other: there value is smooth. A cell is cut
+A trial is a function of the searched joint: a value that must vanish, with its slope; a guard that is negative where
+the trial has no solution, with its slope; and directions, the cosines and sines of angles that a partial step takes
+from a vector, which turn fast where that vector is short. The two roots under the guard are one curve: where the guard
+vanishes the curve goes over from one to the other. Such an end is looked at in s with joint = end + scale s², s > 0 on
+the wanted side and s < 0 on the other: there value is smooth. A cell is cut
 
 * where a direction turns by more than 45 degrees: so trials stand close where it turns;
 * where value has one sign at both ends, and its slopes say that it may touch zero in between;
@@ -36,7 +36,7 @@ GAP = 1e-6
 NEAR_ZERO = 0.5
 """A cubic hides two roots where it turns back below this share of the values at the ends."""
 BENT = 0.125
-"""So much of how slopes differ over a cell their tangents may stay away from zero, and there may be a root: it has kinks."""
+"""So much of how slopes differ over a cell their tangents may stay away from zero where a root may be: it has kinks."""
 SEAM = 1e-3
 """No cell is cut nearer to where the two sides meet: there a slope has no digits."""
 ASIDE = 0.47
@@ -167,7 +167,8 @@ def _hides_roots(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Fl
 
 
 def _comes_back(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Flags:
-    """Whether a value that has one sign at both ends heads for zero at both, and its tangents meet beyond, or nearly there.
+    """Whether a value that has one sign at both ends heads for zero at both, and its tangents meet beyond,
+    or nearly there.
 
     Where they do not meet in between it is bent both ways, and nobody knows. It has kinks, too: tangents are no bound.
     """

@@ -1,9 +1,9 @@
 """All roots of a trial along one joint, by arrays: the circle is cut into cells until each holds one root at most.
 
-What the ends of a cell say of it is in `cells`. What is left has one root where value changes its sign, else none. A cell
-too narrow to be cut, over which a direction turns, is a jump: there the joint stands still, and the angle is free. A value
-that is an entry of a rotation is then a + b cos + c sin of the angle, which three trials determine. Where no root fits, the
-circle is cut otherwise, and looked at once more.
+What the ends of a cell say of it is in `cells`. What is left has one root where value changes its sign, else none. A
+cell too narrow to be cut, over which a direction turns, is a jump: there the joint stands still, and the angle is free.
+A value that is an entry of a rotation is then a + b cos + c sin of the angle, which three trials determine. Where no
+root fits, the circle is cut otherwise, and looked at once more.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ T = TypeVar("T")
 CELLS = 72
 """The circle is cut into so many cells at first."""
 SHIFTS = (0.5, 0.25)
-"""How far behind the start the first cell begins, in cells; where no root fits, the circle is cut otherwise, once more."""
+"""How far behind the start the first cell begins, in cells; where no root fits, the circle is cut again, otherwise."""
 ROUNDS = 50
 """Cells are cut again at most so often."""
 CLOSING = 60
@@ -53,7 +53,7 @@ _THIRD = 2.0 * np.pi / 3.0
 RIM = 0.999
 """How much of the strip on which the two sides are one is looked at."""
 VANISHING = 1e-10
-"""A trial that leaves no more than this is offered as a root, whatever there is around it: the reference itself, for one."""
+"""A trial that leaves no more than this is offered as a root, whatever is around it: the reference itself, for one."""
 Finish = Callable[[At], tuple[Flags, Reals]]
 """Whether a root fits, and what is said of it."""
 
@@ -119,7 +119,7 @@ def _vanishing(cells: Cells) -> At:
 
 
 def _vanishes(said: Reals) -> Flags:
-    """Whether a trial is next to a root, whatever there is around it: where the guard vanishes, value has half its digits."""
+    """Whether a trial is next to a root, whatever is around it: where the guard vanishes half the digits are lost."""
     value, guard = np.abs(said[:, VALUE]), said[:, GUARD]
     return np.asarray((value <= VANISHING) & (guard >= 0.0) | (value <= NEXT) & (np.abs(guard) <= VANISHING))
 

@@ -20,6 +20,7 @@ from derive.equations.limits import limits_program
 from derive.equations.pose_at_axes import (
     Forward,
 )
+from derive.equations.windows import windows
 from derive.geometry.pose import pose_of
 from derive.ir.passes import assemble, hoist
 from derive.ir.program import (
@@ -62,7 +63,7 @@ from derive.kinematics.forward import (
 )
 from derive.kinematics.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics.kinematics import Freedom, Kinematics, Margin
-from derive.kinematics.parameters import machine_parameters, setup_program, windows
+from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.scanned import (
     DETERMINANT,
     branch_statements,
@@ -185,7 +186,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
     """The bundle of all programs, with the values that depend on parameters alone moved into the setup."""
     parameters = machine_parameters(mechanism)
     constants = [o.name for o in setup_program(mechanism, parameters).outputs]
-    unsettled = windows(mechanism)  # drives may change these later
+    unsettled = {o.name for window in windows(mechanism) for o in window.outputs}  # drives may change these later
     settled = [name for name in constants if name not in unsettled]
     whole, first = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], settled)
     shorter, second = lowered(whole, [*settled, *(let.name.name for let in first)])

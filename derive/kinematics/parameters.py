@@ -1,7 +1,4 @@
-"""All inputs of a machine, and the setup program that checks them and computes what depends on them alone.
-
-Where a controller hands over the limits of its drives, `limits_of_axis` narrows those of the machine by them.
-"""
+"""All inputs of a machine, and the setup program that checks them and computes what depends on them alone."""
 
 from __future__ import annotations
 
@@ -9,20 +6,15 @@ from collections.abc import Collection, Iterable, Sequence
 
 import sympy as sp
 
-from derive.description.mechanism import Joint, Mechanism, Parameter, Role, rotary
+from derive.description.mechanism import Joint, Mechanism, Parameter, Role
 from derive.equations.choices import converted, input_of
+from derive.equations.windows import windows
 from derive.ir.constants import (
     LARGEST,
-    LIMIT,
-    ONE_TURN,
     TIE_SHARE,
-    UNLIMITED,
 )
-from derive.ir.passes import bare, renamed
-from derive.ir.primitives import (
-    Select,
-    ToReal,
-)
+from derive.ir.passes import bare
+from derive.ir.primitives import ToReal
 from derive.ir.program import (
     Let,
     Output,
@@ -30,13 +22,11 @@ from derive.ir.program import (
     Require,
     Statement,
     Status,
-    rewritten,
 )
-from derive.ir.reason import Why, about_input, about_parameters
+from derive.ir.reason import Reason, about_parameters
 from derive.ir.symbols import (
     MIN_TYPE2_MARGIN,
     SCALE,
-    called,
     flag,
     is_count,
     real,
@@ -117,17 +107,15 @@ def setup_program(
     for constraint in mechanism.constraints:
         body += constraint.steps
         body.append(_needed(_inequality(constraint.condition), constraint.message))
-    ends = {o.name for key in limited_keys(mechanism) for o in _limit_outputs(key)}
+    found = windows(mechanism)
+    ends = {name for window in found for name in window.given}
     outputs = [_as_constant(p) for p in parameters if p.name not in ends]
-    for joint in mechanism.joints:
-        body += [_ordered(joint.key), *_limits(joint.key, _fallback(joint))]
-        outputs += _limit_outputs(joint.key)
-        if not has_settings:
-            body += [*_widened(joint.key), *_turn_window(joint)]
-            outputs += _window_outputs(joint.key, has_turns=joint.multi_turn)
-    for quantity in mechanism.limited:
-        body += [_ordered(quantity.name), *_limits(quantity.name, ()), *_widened(quantity.name)]
-        outputs += [*_limit_outputs(quantity.name), *_window_outputs(quantity.name, has_turns=False)]
+    for window in found:
+        body += [window.ordered, *window.limits]
+        outputs += window.limit_outputs
+        if not (has_settings and window.is_axis):
+            body += window.ends
+            outputs += window.outputs
     if mechanism.is_platform:
         body += machine_statements(mechanism)
         outputs += machine_constants(mechanism)
@@ -148,11 +136,6 @@ def _as_constant(parameter: Parameter) -> Output:
     """The parameter as other programs read it: a sign is a real number, which multiplies."""
     own = input_of(parameter)
     return Output(parameter.name, ToReal(own) if is_count(own) else own)
-
-
-def limited_keys(mechanism: Mechanism) -> tuple[str, ...]:
-    """The keys of the axes and quantities with limits: the last part of the names of these limits."""
-    return (*(joint.key for joint in mechanism.joints), *(quantity.name for quantity in mechanism.limited))
 
 
 def chooses_by_lengths(mechanism: Mechanism) -> bool:
@@ -189,6 +172,11 @@ def _range_of(parameter: Parameter) -> tuple[Require, ...]:
     return (_needed(sp.And(above, sp.Le(value, min(high, LARGEST))), note),)
 
 
+def ranges(parameters: Iterable[Parameter]) -> frozenset[Reason | None]:
+    """The reasons that refuse a parameter for itself, whatever the others are."""
+    return frozenset(condition.reason for p in parameters for condition in _range_of(p))
+
+
 def _needed(condition: sp.Basic, what: str) -> Require:
     """A condition on parameters, with its sentence."""
     return Require(condition, Status.NOT_INITIALIZED, reason=about_parameters(what))
@@ -199,29 +187,8 @@ def _inequality(condition: sp.Basic) -> sp.Basic:
     return sp.Le(sp.Abs(condition.lhs - condition.rhs), 0) if isinstance(condition, sp.Eq) else condition
 
 
-def _ordered(key: str) -> Require:
-    lower, upper = real(f"lower_{key}"), real(f"upper_{key}")
-    condition = sp.Or(sp.Lt(lower, upper), sp.Le(sp.Abs(lower) + sp.Abs(upper), 0))
-    return _needed(condition, f"lower_{key} below upper_{key}, or both 0")
-
-
-Fallback = tuple[tuple[sp.Basic, sp.Expr, sp.Expr], ...]
-
-
-def _fallback(joint: Joint) -> Fallback:
-    """(condition, lower, upper) where no limit is given: the range of an axis with a pitch, or the domain of its joint."""
-    found: list[tuple[sp.Basic, sp.Expr, sp.Expr]] = []
-    if joint.pitch != 0 and joint.limit_range is not None:
-        low, high = (sp.Integer(int(v)) for v in joint.limit_range)
-        found.append((sp.Gt(sp.Abs(joint.pitch), 0), low, high))
-    if joint.domain is not None:
-        low, high = (sp.Integer(int(v)) + joint.offset for v in joint.domain)
-        found.append((sp.true, low, high))
-    return tuple(found)
-
-
 def _without_limits(joint: Joint) -> str:
-    """The limits of an axis for which none are given, in words: see `_fallback`."""
+    """The limits of an axis for which none are given, in words: see `windows`."""
     if joint.domain is not None:
         low, high = joint.domain
         return f"joint value {low:g} .. {high:g}" if high < float(LARGEST) else f"joint value {low:g} or more"
@@ -229,112 +196,3 @@ def _without_limits(joint: Joint) -> str:
         low, high = joint.limit_range
         return f"no limit, but {low:g} .. {high:g} with a pitch"
     return "no limit"
-
-
-def _limits(key: str, fallback: Fallback) -> tuple[Let, ...]:
-    lower, upper = real(f"lower_{key}"), real(f"upper_{key}")
-    low, high, unlimited = _effective(key)
-    low_value, high_value, free = lower, upper, sp.Le(sp.Abs(lower) + sp.Abs(upper), 0)
-    for condition, bottom, top in fallback:
-        given = sp.Gt(sp.Abs(lower) + sp.Abs(upper), 0)
-        low_value = Select(given, lower, Select(condition, bottom, sp.Integer(0)) if condition != sp.true else bottom)
-        high_value = Select(given, upper, Select(condition, top, sp.Integer(0)) if condition != sp.true else top)
-        free = sp.And(free, sp.Not(condition))
-    return (
-        Let(unlimited, free, f"{key}: whether it has no limits"),
-        Let(low, low_value),
-        Let(high, high_value),
-    )
-
-
-def _effective(key: str) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
-    """The names of the lower limit, of the upper limit, and of the flag that there is none."""
-    return real(f"effective_lower_{key}"), real(f"effective_upper_{key}"), flag(f"unlimited_{key}")
-
-
-def _widened(key: str) -> tuple[Let, ...]:
-    """The ends that are tested: the limits with their tolerance."""
-    low, high, unlimited = _effective(key)
-    tolerance = real(f"tolerance_{key}")
-    return (
-        Let(tolerance, LIMIT * (1 + sp.Abs(low) + sp.Abs(high))),
-        Let(real(f"lowest_{key}"), Select(unlimited, -UNLIMITED, low - tolerance)),
-        Let(real(f"highest_{key}"), Select(unlimited, UNLIMITED, high + tolerance)),
-    )
-
-
-def _limit_outputs(key: str) -> list[Output]:
-    return [
-        Output(f"lower_{key}", real(f"effective_lower_{key}")),
-        Output(f"upper_{key}", real(f"effective_upper_{key}")),
-        Output(f"unlimited_{key}", flag(f"unlimited_{key}")),
-    ]
-
-
-def windows(mechanism: Mechanism) -> frozenset[str]:
-    """The names of the constants that say where an axis may be: its widened limits, and the turn inside them."""
-    found = [o for j in mechanism.joints for o in _window_outputs(j.key, has_turns=j.multi_turn)]
-    found += [o for quantity in mechanism.limited for o in _window_outputs(quantity.name, has_turns=False)]
-    return frozenset(o.name for o in found)
-
-
-def _window_outputs(key: str, *, has_turns: bool) -> list[Output]:
-    words = ("lowest", "highest", "single", "mid") if has_turns else ("lowest", "highest")
-    named = {"single": flag}
-    return [Output(f"{word}_{key}", named.get(word, real)(f"{word}_{key}")) for word in words]
-
-
-def _turn_window(joint: Joint) -> tuple[Let, ...]:
-    """Whether at most one value of the axis is inside its limits, with a gap that no step crosses; the middle of its limits."""
-    if not joint.multi_turn:
-        return ()
-    low, high, unlimited = _effective(joint.key)
-    one_turn = sp.And(sp.Not(unlimited), sp.Le(high - low, ONE_TURN + real(f"tolerance_{joint.key}")))
-    return (
-        Let(flag(f"single_{joint.key}"), one_turn, "at most one turn is inside the limits"),
-        Let(real(f"mid_{joint.key}"), (low + high) / 2),
-    )
-
-
-def limits_of_axis() -> Program:
-    """The limits of an axis of the machine and those of its drive together, for any axis.
-
-    own_unlimited own_lower own_upper, drive_limited drive_lower drive_upper → lowest highest single middle: both ends with
-    their tolerance, whether at most one turn is inside, and the middle. A drive that has handed over nothing has no limits:
-    `drive_limited` is false, and its ends are not read.
-    """
-    axis = rotary("axis", "any axis")
-    low, high, unlimited = _effective(axis.key)
-    own_unlimited, own_lower, own_upper = flag("own_unlimited"), real("own_lower"), real("own_upper")
-    drive_limited, drive_lower, drive_upper = flag("drive_limited"), real("drive_lower"), real("drive_upper")
-    own_low, own_high = real("own_low"), real("own_high")
-    body: tuple[Statement, ...] = (
-        Require(
-            sp.Or(sp.Not(drive_limited), sp.Le(drive_lower, drive_upper)),
-            Status.BAD_INPUT,
-            reason=about_input(Why.DRIVE_LIMITS_CROSSED),
-        ),
-        Let(own_low, Select(own_unlimited, -LARGEST, own_lower), "own limits; without any, the largest axis value"),
-        Let(own_high, Select(own_unlimited, LARGEST, own_upper)),
-        Let(low, Select(sp.And(drive_limited, sp.Gt(drive_lower, own_low)), drive_lower, own_low), "the narrower of both limits"),
-        Let(high, Select(sp.And(drive_limited, sp.Lt(drive_upper, own_high)), drive_upper, own_high)),
-        Require(sp.Le(low, high), Status.NOT_INITIALIZED, reason=about_input(Why.NO_AXIS_VALUE)),
-        Let(unlimited, sp.And(sp.Not(drive_limited), own_unlimited)),
-        *_widened(axis.key),
-        *_turn_window(axis),
-    )
-    plain = {called(f"{word}_{axis.key}", like): called(name, like) for word, (name, like) in _OF_ANY_AXIS.items()}
-    named = tuple(renamed(rewritten(s, lambda e: e.xreplace(plain)), lambda name: plain.get(name, name)) for s in body)
-    outputs = (*(Output(name, real(name)) for name in ("lowest", "highest")), Output("single", flag("single")))
-    outputs = (*outputs, Output("middle", real("middle")))
-    inputs = (own_unlimited, own_lower, own_upper, drive_limited, drive_lower, drive_upper)
-    return verify(Program("limits_of_axis", inputs, named, outputs))
-
-
-_REAL, _FLAG = real("any_number"), flag("any_flag")
-_OF_ANY_AXIS = {
-    "effective_lower": ("lower_end", _REAL), "effective_upper": ("upper_end", _REAL), "unlimited": ("unlimited", _FLAG),
-    "tolerance": ("tolerance", _REAL), "lowest": ("lowest", _REAL), "highest": ("highest", _REAL), "single": ("single", _FLAG),
-    "mid": ("middle", _REAL),
-}  # fmt: skip
-"""The names of the limits of an axis, where no axis is named."""

@@ -43,21 +43,31 @@ def turnless(program: Program) -> frozenset[sp.Symbol]:
 
 def any_turn(program: Program) -> Program:
     """The program for inputs that are known to be good: no look at them, and any turn of an axis that is only an angle."""
-    body = [s for s in program.body if not (isinstance(s, Require) and s.otherwise is Status.BAD_INPUT)]
-    counted: set[sp.Symbol] = set()
-    while (more := _read_as_numbers(body, counted)) is not None:
+    counted = turns_that_count(program)
+    body = [_in_any_turn(s, counted) for s in _of_good_input(program)]
+    return assemble(program.name, body, program.outputs)
+
+
+def turns_that_count(program: Program) -> frozenset[sp.Symbol]:
+    """The axes that are chosen on a turn because another value depends on which: a pitch or a gear moves with them."""
+    counted: frozenset[sp.Symbol] = frozenset()
+    while (more := _read_as_numbers(_of_good_input(program), counted)) is not None:
         counted |= more
-    return assemble(program.name, [_in_any_turn(s, counted) for s in body], program.outputs)
+    return counted
 
 
-def _in_any_turn(statement: Statement, counted: set[sp.Symbol]) -> Statement:
+def _of_good_input(program: Program) -> list[Statement]:
+    return [s for s in program.body if not (isinstance(s, Require) and s.otherwise is Status.BAD_INPUT)]
+
+
+def _in_any_turn(statement: Statement, counted: frozenset[sp.Symbol]) -> Statement:
     """The statement without the choice of a turn, unless that counts."""
     if not isinstance(statement, Let) or not isinstance(statement.value, NearestPeriod) or statement.name in counted:
         return statement
     return replace(statement, value=statement.value.args[0], turn_of="")
 
 
-def _read_as_numbers(body: list[Statement], counted: set[sp.Symbol]) -> set[sp.Symbol] | None:
+def _read_as_numbers(body: list[Statement], counted: frozenset[sp.Symbol]) -> set[sp.Symbol] | None:
     """The axes of the first statement that needs numbers where all others but the counted ones are in any turn."""
     known: dict[sp.Symbol, Type] = {}
     chosen = {s.name for s in body if isinstance(s, Let) and isinstance(s.value, NearestPeriod)}

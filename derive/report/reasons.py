@@ -23,7 +23,7 @@ from derive.kinematics.kinematics import Kinematics
 
 NOT_INITIALIZED = "not initialized"
 NO_MEANING = "byte {byte} of the configuration means nothing"
-_OTHER_TURN = "{subject}: this turn{axis} is beyond a limit, name one inside"
+OTHER_TURN = "{subject}: this turn{axis} is beyond a limit, name one inside"
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class Reasons:
         """The same where an axis is inside on another turn: named, where the reason is not about itself."""
         subject = self.name(reason.subject)
         axis = "" if subject == turn.name else f" of {turn.name}"
-        return _with_unit(_OTHER_TURN.format(subject=subject, axis=axis), reason.unit)
+        return _with_unit(OTHER_TURN.format(subject=subject, axis=axis), reason.unit)
 
 
 def _with_unit(text: str, unit: Unit) -> str:

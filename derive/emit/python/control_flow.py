@@ -23,7 +23,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.emit.python.layout import WIDTH, fold, taken_apart, tuple_of
+from derive.emit.python.layout import fold, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.primitives import (
     NearestPeriod,
@@ -70,7 +70,7 @@ def array_arm_lines(
         "",
         *holds,
         *said,
-        *_assigned(results, f"elsewhere({condition}, {tuple_of(held)}, {function}, {tuple_of(list(kinds))})"),
+        *taken_apart(results, f"elsewhere({condition}, {tuple_of(held)}, {function}, {tuple_of(list(kinds))})"),
     ]
 
 
@@ -118,13 +118,6 @@ def _unused(function: str, holds: Sequence[str]) -> str:
         number += 1
         found = f"{function}_{number}"
     return found
-
-
-def _assigned(names: list[str], value: str) -> list[str]:
-    first = fold(f"{', '.join(names) if len(names) > 1 else f'({names[0]},)'} = {value}")
-    if len(first[0]) <= WIDTH:
-        return first
-    return [*fold(f"found = {value}"), *taken_apart(names, "found")]
 
 
 def fixed(body: Iterable[Statement], constants: Iterable[sp.Symbol]) -> set[sp.Symbol]:

@@ -4,10 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from derive.description.mechanism import Mechanism
-from derive.emit.python.layout import fold
+from derive.description.mechanism import Mechanism, Parameter, Role
+from derive.ir.constants import LARGEST
 from derive.kinematics.kinematics import Kinematics
 from derive.report.cost import Cost, costs_of
+
+_UNITS = {
+    Role.LENGTH: "u", Role.SIGNED_LENGTH: "u", Role.DISTANCE: "u", Role.PITCH: "u/rev", Role.GEAR: "u/deg",
+    Role.COUPLING: "1", Role.RATIO: "1", Role.FLAG: "", Role.SIGN: "", Role.ANGLE: "deg",
+}  # fmt: skip
+_USUAL: dict[Role, tuple[float, float, float | None]] = {
+    Role.LENGTH: (0.0, float(LARGEST), None),
+    Role.SIGNED_LENGTH: (-float(LARGEST), float(LARGEST), None),
+    Role.RATIO: (0.0, 1.0, 0.0),
+    Role.FLAG: (0.0, 1.0, 0.0),
+    Role.SIGN: (-1.0, 1.0, 1.0),
+}
+"""Range and default by kind, where it is not any number with the default 0."""
 
 
 def class_name(name: str, better: str | None) -> str:
@@ -36,15 +49,21 @@ def axes(kin: Kinematics) -> list[str]:
     )  # fmt: skip
 
 
+def usual(role: Role) -> dict[str, object]:
+    """What a parameter of a kind is, unless its own entry says otherwise: unit, range and default."""
+    low, high, default = _USUAL.get(role, (-float(LARGEST), float(LARGEST), 0.0))
+    return {"unit": _UNITS[role], "low": low, "high": high, "low_is_open": role is Role.LENGTH, "default": default}
+
+
 def parameters(kin: Kinematics) -> list[str]:
-    """The keywords of the class."""
-    return _tuple(
-        _call(
-            "Parameter", name=p.name, kind=p.role.value, unit=p.unit, meaning=p.meaning,
-            low=p.low, high=p.high, low_is_open=p.low_open, default=p.default,
-        )
-        for p in kin.parameters
-    )  # fmt: skip
+    """The keywords of the class: kind, name and meaning, then what is unusual of its kind."""
+    return _tuple(_parameter(p) for p in kin.parameters)
+
+
+def _parameter(p: Parameter) -> str:
+    given = {"unit": p.unit, "low": p.low, "high": p.high, "low_is_open": p.low_open, "default": p.default}
+    unusual = {key: value for key, value in given.items() if value != usual(p.role)[key]}
+    return _call("Parameter.of", *map(literal, (p.role.value, p.name, p.meaning)), **unusual)
 
 
 def configuration(kin: Kinematics) -> list[str]:
@@ -99,10 +118,10 @@ def _short(name: str) -> str:
     return short if short.isidentifier() else name
 
 
-def _call(constructor: str, **values: object) -> str:
-    return f"{constructor}({', '.join(f'{key}={literal(value)}' for key, value in values.items())})"
+def _call(constructor: str, *first: str, **values: object) -> str:
+    return f"{constructor}({', '.join([*first, *(f'{key}={literal(value)}' for key, value in values.items())])})"
 
 
 def _tuple(entries: Iterable[str]) -> list[str]:
-    parts = [line for entry in entries for line in fold(f"{entry},", 4)]
+    parts = [f"    {entry}," for entry in entries]
     return ["(", *parts, ")"] if parts else ["()"]

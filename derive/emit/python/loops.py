@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from derive.emit.python.layout import fold, packed
+from derive.emit.python.layout import fold, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.program import Iterate, Solve
 
@@ -14,12 +14,9 @@ from derive.ir.program import Iterate, Solve
 def solve_lines(system: Solve, printer: ScalarPrinter) -> list[str]:
     """`determinant, x, y = solve(matrix, right)`, matrices by rows."""
     targets = [spelled(system.determinant.name) if system.determinant is not None else "_", *_names(system.names)]
-    head = f"{', '.join(targets)} = solve("
-    lines = [head] if len(head) <= 110 else ["(", *_indented(packed([f"{t}," for t in targets])), ") = solve("]
-    if len(targets) == 1:
-        lines = [f"({targets[0]},) = solve("]
     note = [f"# {system.note}"] if system.note else []
-    return [*note, *lines, *_matrix(system.matrix, system.size, printer), *_matrix(system.right, system.columns, printer), ")"]
+    matrix, right = _matrix(system.matrix, system.size, printer), _matrix(system.right, system.columns, printer)
+    return [*note, *taken_apart(targets, f"solve({matrix}, {right})")]
 
 
 def scalar_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
@@ -40,7 +37,7 @@ def _head(loop: Iterate, start: str) -> list[str]:
 def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -> list[str]:
     """Leave the loop, or go on; a loop that was never left refuses."""
     return [
-        *_indented([*fold(f"if ({done}):" if len(done) > 90 else f"if {done}:"), "    break"]),
+        *_indented([*fold(f"if {done}:"), "    break"]),
         *_indented(_assignments(loop, printer)),
         "else:",
         f"    {refusal}",
@@ -75,15 +72,10 @@ def _names(symbols: Sequence[sp.Symbol]) -> list[str]:
     return [spelled(symbol.name) for symbol in symbols]
 
 
-def _matrix(entries: Sequence[sp.Expr], width: int, printer: ScalarPrinter) -> list[str]:
-    if not entries:
-        return ["    (),"]
-    rows = [entries[i : i + width] for i in range(0, len(entries), width)]
-    texts = [f"({', '.join(map(printer.print, row))}{',' if width == 1 else ''})," for row in rows]
-    whole = f"({' '.join(texts).removesuffix(',')}),"
-    if len(whole) <= 100:
-        return [f"    {whole}"]
-    return ["    (", *(line for text in texts for line in fold(text, 8)), "    ),"]
+def _matrix(entries: Sequence[sp.Expr], width: int, printer: ScalarPrinter) -> str:
+    """A matrix by rows."""
+    rows = [entries[i : i + width] for i in range(0, len(entries), width)] if entries else []
+    return tuple_of([tuple_of(list(map(printer.print, row))) for row in rows])
 
 
 def _indented(lines: Sequence[str], steps: int = 1) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -10,17 +10,27 @@ from textwrap import wrap
 
 from jinja2 import Environment
 
+from derive.description.dimensions import Role
 from derive.emit.language import GENERATED, Part, environment
 from derive.emit.python import entries, setup
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
 from derive.emit.python.calls import every_root
-from derive.emit.python.layout import WIDTH, fold
+from derive.emit.python.finish import Function
+from derive.emit.python.layout import fold, formatted
 from derive.emit.python.methods import branch, carried, forwards, limits, methods, shared
 from derive.emit.python.printer import ScalarPrinter, literal, primitives_in
-from derive.emit.python.program import Method, has_search, scalar_body, unpacked
+from derive.emit.python.program import Method, constants_of, has_search, scalar_body, unpacked
 from derive.emit.python.refusal import explained
 from derive.emit.python.rotation import rotation_functions
-from derive.emit.python.unrolled import can_be_unrolled, has_folds, unrolled
+from derive.emit.python.unrolled import (
+    Unrolled,
+    can_be_unrolled,
+    has_folds,
+    is_trusted,
+    is_unrolled,
+    trusted_branch,
+    unrolled,
+)
 from derive.ir import cells, roots
 from derive.ir.constants import (
     EDGE,
@@ -29,6 +39,7 @@ from derive.ir.constants import (
     FREE_ANGLE,
     HELD,
     LARGEST,
+    LIMIT,
     ONE_TURN,
     PIVOT,
     ROTATION,
@@ -36,12 +47,14 @@ from derive.ir.constants import (
     SOLVABLE,
     TIE,
     TRIALS,
+    UNLIMITED,
 )
 from derive.ir.passes import untold
 from derive.ir.program import FindRoot, Status
+from derive.ir.reason import Why
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.parameters import chooses_by_lengths
-from derive.report.reasons import NO_MEANING, reasons_of
+from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
+from derive.report.reasons import NO_MEANING, OTHER_TURN, reasons_of
 
 name = "python"
 _OF_THE_SEARCH = (
@@ -62,6 +75,7 @@ _FIXED = (
     "softkin/_core.py",
     "softkin/_coupled.py",
     "softkin/_input.py",
+    "softkin/_limits.py",
     "softkin/_offset.py",
     "softkin/_orientation.py",
     "softkin/_rotation.py",
@@ -85,6 +99,8 @@ _EXPORTS = (
     "Axis", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "KinematicsError", "Mechanism", "OrientationImage",
     "Parameter", "Singularity", "Solution", "Status", "catalogue",
 )  # fmt: skip
+_TEXT = 110
+"""Columns of a docstring."""
 _CHUNK = 8192
 """Rows of a batch at a time: 64 KiB an array."""
 _MEANINGS = {
@@ -112,7 +128,7 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
     files |= {path: templates.get_template(f"{path}.j2").render(index=index, exports=exports) for path in _INDEXED}
     for part in parts:
         files |= part["files"]
-    return files
+    return formatted(files)
 
 
 @cache
@@ -141,6 +157,12 @@ def _templates() -> Environment:
         "solvable": literal(float(SOLVABLE)),
         "tie": literal(float(TIE)),
         "no_meaning": NO_MEANING,
+        "below": entries.literal(Why.BELOW.value),
+        "above": entries.literal(Why.ABOVE.value),
+        "other_turn": entries.literal(OTHER_TURN),
+        "kinds_of_parameters": {role.value: entries.usual(role) for role in Role},
+        "limit": literal(float(LIMIT)),
+        "unlimited": literal(float(UNLIMITED)),
     }
     return templates
 
@@ -174,20 +196,27 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     array_programs = _array_programs(kin)
     reasons = explained(reasons_of(kin))
     bodies = [scalar_body(m, reasons) if m.is_explained else scalar_body(_untold(m)) for m in scalar]
+    lean = unrolled(kin) if is_unrolled(kin) else None
+    trusted = trusted_branch(kin) if is_trusted(kin) else None
+    setup_lines = setup.setup_body(kin, _constants_read(kin, (*scalar, *arrays), lean or trusted))
+    texts = (*bodies, setup_lines, trusted.body if trusted else ())
     context = {
         **names,
         "kin": kin,
         "mechanism": kin.mechanism,
         "entries": entries,
-        "setup": setup,
+        "keywords": setup.keywords(kin.parameters),
+        "setup_body": setup_lines,
         "array_programs": array_programs,
         "bases": _bases(kin),
-        "core_types": sorted({"Image", "Pose", *_core(kin)}),
+        "core_types": sorted({"Image", "Mechanism", "Pose"}),
         "types": _types(kin, scalar),
-        "primitives": primitives_in(line for body in (*bodies, setup.setup_body(kin)) for line in body),
-        "names_turns": any("turn_inside" in line for body in bodies for line in body),
+        "primitives": primitives_in(line for body in texts for line in body),
+        "of_limits": [n for n in ("beyond", "beyond_turn", "turn_inside") if any(f"{n}(" in line for b in bodies for line in b)],
         "searches": any(map(has_search, kin.shared)),
-        "is_unrolled": can_be_unrolled(kin),
+        "lean": lean,
+        "trusted": trusted,
+        "slots": ("_all_trusted", "_constants", "_finish", "_one_trusted") if lean else ("_constants",),
         "chooses_by_lengths": chooses_by_lengths(kin.mechanism),
         "has_folds": has_folds(kin),
         "margins": tuple(m.name for m in kin.margins),
@@ -208,10 +237,19 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         f"softkin/{names['module']}.py": templates.get_template("mechanism.py.j2").render(context),
         f"softkin/_array_programs/{names['module']}.py": templates.get_template("arrays.py.j2").render(array_context),
     }
-    if can_be_unrolled(kin):
-        unrolled_text = templates.get_template("unrolled.py.j2").render(**names, unrolled=unrolled(kin))
+    if lean:
+        unrolled_text = templates.get_template("unrolled.py.j2").render(**names, unrolled=lean)
         files |= {f"softkin/_unrolled/{names['module']}.py": unrolled_text}
     return files
+
+
+def _constants_read(
+    kin: Kinematics, programs: Iterable[Method], lean: Unrolled | Function | None
+) -> set[str]:
+    """The constants that a program reads, or the text around the programs."""
+    found = {name for method in programs for name in constants_of(method)} | set(lean.constants if lean else ())
+    found |= {TIE_OF_LENGTHS.name} if chooses_by_lengths(kin.mechanism) else set()
+    return found | ({"searched"} if kin.mechanism.search is not None else set())
 
 
 def _every_root(found: Sequence[Method]) -> list[str]:
@@ -238,11 +276,6 @@ def _bases(kin: Kinematics) -> dict[str, str]:
     found |= {"_start": "IterativeForward"} if kin.forward_from is not None else {}
     found |= {"_twist": "TwistChoice"} if kin.chooses_twist else {}
     return found or {"_core": "Mechanism"}
-
-
-def _core(kin: Kinematics) -> Sequence[str]:
-    """The base class, where it is that of all."""
-    return [base for module, base in _bases(kin).items() if module == "_core"]
 
 
 def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
@@ -283,4 +316,4 @@ def _sorted(found: set[str]) -> list[str]:
 def _paragraph(text: str, indent: int = 0) -> str:
     """A text in lines of the usual width."""
     space = " " * indent
-    return "\n".join(wrap(text, WIDTH, initial_indent=space, subsequent_indent=space))
+    return "\n".join(wrap(text, _TEXT, initial_indent=space, subsequent_indent=space))

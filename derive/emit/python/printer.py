@@ -24,7 +24,8 @@ from derive.optimize.inline import Grouped
 TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
-    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "no_offsets", "opposite", "holds", "reasonable",
+    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "no_offsets", "opposite", "holds",
+    "reasonable", "are_usable",
 }  # fmt: skip
 """Names that a generated method uses for itself."""
 _ARRAY_NAMES = {"abs": "absolute"}
@@ -47,7 +48,8 @@ def literal(value: float) -> str:
 
 def primitives_in(lines: Iterable[str]) -> list[str]:
     """The primitives and constants that statements use, in alphabetical order."""
-    return sorted(words(lines) & {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "arctan2", "solve", "sqrt"} - {"abs", "select"})
+    known = {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "are_usable", "arctan2", "solve", "sqrt"} - {"abs", "select"}
+    return sorted(words(lines) & known)
 
 
 def words(lines: Iterable[str]) -> set[str]:

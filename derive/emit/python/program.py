@@ -9,7 +9,7 @@ from itertools import groupby
 import sympy as sp
 
 from derive.emit.python import calls as python_calls
-from derive.emit.python.layout import WIDTH, fold, taken_apart, tuple_of
+from derive.emit.python.layout import assigned, fits, fold, taken_apart, tuple_of
 from derive.emit.python.loops import scalar_end, scalar_head, solve_lines
 from derive.emit.python.printer import ScalarPrinter, literal, spelled
 from derive.emit.python.refusal import PLAIN, Refusals, conjunction
@@ -88,7 +88,7 @@ class Method:
 
 def scalar_body(method: Method, refusals: Refusals = PLAIN) -> list[str]:
     """The body on plain numbers: the first condition that does not hold refuses."""
-    lines = [*unpacked(method), *_constants(method, "self._constants"), *statement_lines(method.program, refusals, _SCALAR)]
+    lines = [*unpacked(method), *constant_lines(method), *statement_lines(method.program, refusals, _SCALAR)]
     return [*lines, *fold(f"return {values_of(method, _SCALAR) or refusals.success}")]
 
 
@@ -102,7 +102,7 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
     lines: list[str] = []
     for item, same in grouped(items):
         if isinstance(item, Require):
-            lines += _refusing(same, refusals)
+            lines += refusals.lines(same)
         elif isinstance(item, Iterate):
             lines += [*scalar_head(item, printer), *step_lines(item, printer)]
             lines += scalar_end(item, conjunction([item.done]), refusals.of_loop(item), printer)
@@ -115,10 +115,6 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
     return lines
 
 
-def _refusing(requires: Sequence[Require], refusals: Refusals) -> list[str]:
-    return [*note_lines(requires[0].comment), *refusals.lines(requires)]
-
-
 def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """A binding, or a choice between two sides that bind the same or refuse."""
     if isinstance(item, If):
@@ -128,7 +124,7 @@ def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[
         holds, fails = (_side(side, refusals, printer) for side in sides)
         return [*head, *holds, "else:", *fails]
     if isinstance(item, Require):
-        return _refusing([item], refusals)
+        return refusals.lines([item])
     if isinstance(item, Let) and isinstance(item.value, NearestPeriod):
         return _turn_lines(item, item.value, printer)
     assert isinstance(item, Let | Solve)
@@ -175,7 +171,7 @@ def binding_lines(statement: Let | Solve, printer: ScalarPrinter) -> list[str]:
 
 
 def step_lines(loop: Iterate, printer: ScalarPrinter) -> list[str]:
-    """The step of a loop: let lines are folded as if they were not indented, so they are a little longer."""
+    """The step of a loop."""
     return [f"    {line}" for s in loop.step for line in binding_lines(s, printer)]
 
 
@@ -185,7 +181,7 @@ def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
     if isinstance(let.value, Select | ToReal) and value.startswith("("):
         value = value[1:-1]
     line = f"{spelled(let.name.name)} = {value}"
-    if let.comment and len(line) + len(let.comment) + 4 <= WIDTH:
+    if let.comment and fits(line, let.comment):
         return [f"{line}  # {let.comment}"]
     return [*note_lines(let.comment), *fold(line)]
 
@@ -244,9 +240,10 @@ def names(shape: Shape) -> Iterator[str]:
             yield from names(part)
 
 
-def _constants(method: Method, owner: str) -> list[str]:
+def constant_lines(method: Method, owner: str = "self._constants") -> list[str]:
+    """The constants that a method reads, by their names."""
     constants = constants_of(method)
-    return [f"k = {owner}", *(f"{spelled(c)} = k.{c}" for c in constants)] if constants else []
+    return [f"k = {owner}", *assigned({spelled(c): f"k.{c}" for c in constants})] if constants else []
 
 
 def constants_of(method: Method) -> list[str]:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import sympy as sp
 from sympy.core.relational import Relational
 
 from derive.emit.python.calls import FOUND
-from derive.emit.python.layout import fold
 from derive.emit.python.printer import ScalarPrinter
+from derive.ir.constants import LARGEST
 from derive.ir.program import Iterate, Require, Status
-from derive.ir.reason import OtherTurn
+from derive.ir.reason import OtherTurn, Reason, Why
 from derive.report.reasons import Check, Reasons
 
 _SCALAR = ScalarPrinter()
@@ -28,8 +28,8 @@ class Refusals:
 
     def lines(self, requires: Sequence[Require]) -> list[str]:
         """Where conditions that refuse alike do not all hold."""
-        head = fold(f"if not ({conjunction(r.condition for r in requires)}):")
-        return [*head, f"    return {self.answer(requires[0].otherwise)}"]
+        head = _unless([r.condition for r in requires])
+        return [*_notes(requires), head, f"    return {self.answer(requires[0].otherwise)}"]
 
     def of_loop(self, loop: Iterate) -> str:
         """Where a loop was never left."""
@@ -47,8 +47,10 @@ class Explained(Refusals):
     reasons: Reasons
 
     def lines(self, requires: Sequence[Require]) -> list[str]:
-        """Every reason for itself."""
-        return [line for check in self.reasons.checks(requires) for line in self._lines(check)]
+        """Every reason for itself; a value between two limits in one."""
+        if len(requires) == 2 and (limits := Limits.of(*requires)) is not None:
+            return self._between(limits)
+        return [*_notes(requires), *(line for check in self.reasons.checks(requires) for line in self._lines(check))]
 
     def of_loop(self, loop: Iterate) -> str:
         """A loop that was never left has a reason and no amount."""
@@ -59,21 +61,82 @@ class Explained(Refusals):
         return f'return Diagnosis({FOUND}, "", 0.0)'
 
     def _lines(self, check: Check) -> Iterator[str]:
-        yield from fold(f"if not ({conjunction(check.conditions)}):")
-        missing = [] if check.missing is None else fold(f"missing = {_SCALAR.print(check.missing)}")
+        yield _unless(check.conditions)
+        missing = [] if check.missing is None else [f"missing = {_SCALAR.print(check.missing)}"]
         amount = "missing" if missing else "0.0"
         inside = [line for turn, reason in check.turns for line in self._on_another(turn, check.status, reason, amount)]
-        refused = fold(self._refused(check.status, check.reason, amount))
+        refused = [self._refused(check.status, check.reason, amount)]
         yield from (f"    {line}" for line in (*missing, *inside, *refused))
 
     def _on_another(self, turn: OtherTurn, status: Status, reason: str, missing: str) -> list[str]:
         """Refuse because of the turn, where another one is inside."""
-        low, high = (_one(word, ends) for word, ends in (("max", turn.lowest), ("min", turn.highest)))
-        head = fold(f"if turn := turn_inside({_SCALAR.print(turn.axis)}, {low}, {high}):")
-        return [*head, *(f"    {line}" for line in fold(self._refused(status, reason, f"{missing}, turn")))]
+        return [f"if turn := {_turn_inside(turn)}:", f"    {self._refused(status, reason, f'{missing}, turn')}"]
+
+    def _between(self, limits: Limits) -> list[str]:
+        """What is beyond one of its limits: how far, and the turn that is inside, say functions of the package."""
+        value, low, high = map(_SCALAR.print, (limits.value, limits.lowest, limits.highest))
+        subject = self.reasons.name(limits.reason.subject)
+        given = f'"{subject}", {value}, {low}, {high}'
+        turns = limits.reason.turns
+        if turns == (OtherTurn(subject, limits.value, (limits.lowest,), (limits.highest,)),):
+            refused = f"beyond_turn({given})"
+        else:
+            others = ", ".join(f'"{turn.name}": {_turn_inside(turn)}' for turn in turns)
+            refused = f'beyond({given}, "{limits.reason.unit.value}"{f", {{{others}}}" if others else ""})'
+        return [f"if not {low} <= {value} <= {high}:", f"    return {refused}"]
 
     def _refused(self, status: Status, reason: str, missing: str = "0.0") -> str:
         return f'return Diagnosis({self.answer(status)}, "{reason}", {missing})'
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Two conditions that a value is between two limits, with the reasons to tell: below the one, or above the other."""
+
+    value: sp.Expr
+    lowest: sp.Expr
+    highest: sp.Expr
+    reason: Reason
+
+    @classmethod
+    def of(cls, below: Require, above: Require) -> Limits | None:
+        """What two conditions say; None where they say something else."""
+        low, high, reason, other = below.condition, above.condition, below.reason, above.reason
+        if not (isinstance(low, sp.GreaterThan) and isinstance(high, sp.LessThan) and low.lhs == high.lhs and reason and other):
+            return None
+        found = cls(low.lhs, low.rhs, high.rhs, reason)
+        told = (Why.BELOW, low.rhs - low.lhs), (Why.ABOVE, high.lhs - high.rhs)
+        is_told = (reason, other) == tuple(replace(reason, why=why, amount=amount) for why, amount in told)
+        return found if is_told and below.otherwise is above.otherwise is Status.UNREACHABLE else None
+
+
+def _unless(conditions: Sequence[sp.Basic]) -> str:
+    """The head of what is done where conditions do not all hold."""
+    sized = _sized(*conditions)
+    if sized:
+        return f"if not are_usable({', '.join(map(_SCALAR.print, sized))}):"
+    return f"if not ({conjunction(conditions)}):"
+
+
+def _notes(requires: Sequence[Require]) -> list[str]:
+    """What the conditions are about, as a comment; of inputs the function that tests them says it."""
+    note = requires[0].comment
+    return [f"# {note}"] if note and not _sized(requires[0].condition) else []
+
+
+def _sized(*conditions: sp.Basic) -> list[sp.Expr]:
+    """The values, if the conditions are that several are numbers of reasonable size."""
+    parts = _parts(conditions)
+    sized = [
+        part.lhs.args[0]
+        for part in parts
+        if isinstance(part, sp.LessThan) and isinstance(part.lhs, sp.Abs) and part.rhs == LARGEST
+    ]
+    return sized if len(sized) == len(parts) > 2 else []
+
+
+def _parts(conditions: Iterable[sp.Basic]) -> list[sp.Basic]:
+    return [p for c in conditions for p in (sp.ordered(c.args) if isinstance(c, sp.And) else [c])]
 
 
 def status_of(status: Status) -> str:
@@ -92,10 +155,16 @@ def explained(reasons: Reasons) -> Explained:
 
 def conjunction(conditions: Iterable[sp.Basic]) -> str:
     """Conditions that must all hold, as one."""
-    parts = [p for c in conditions for p in (sp.ordered(c.args) if isinstance(c, sp.And) else [c])]
+    parts = _parts(conditions)
     if len(parts) == 1:
         return _SCALAR.print(parts[0])
     return " and ".join(_SCALAR.print(p) if isinstance(p, Relational) else f"({_SCALAR.print(p)})" for p in parts)
+
+
+def _turn_inside(turn: OtherTurn) -> str:
+    """The call that looks for the number of a turn that is inside."""
+    low, high = (_one(word, ends) for word, ends in (("max", turn.lowest), ("min", turn.highest)))
+    return f"turn_inside({_SCALAR.print(turn.axis)}, {low}, {high})"
 
 
 def _one(word: str, ends: Sequence[sp.Expr]) -> str:

@@ -1,87 +1,124 @@
-"""The setup program as the function that makes the constants of a machine from its parameters."""
+"""The setup program as what makes the constants of a machine from its parameters.
+
+The range of each parameter is tested by the table of parameters, and where an axis may be is made by one call an axis: both are
+the same for every machine.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from dataclasses import replace
+
+import sympy as sp
+
 from derive.description.mechanism import Parameter, Role
-from derive.emit.python.layout import fold
-from derive.emit.python.printer import ScalarPrinter, literal, spelled
+from derive.emit.python.layout import assigned
+from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.emit.python.program import binding_lines
 from derive.emit.python.refusal import conjunction
-from derive.ir.constants import (
-    UNLIMITED,
-)
+from derive.equations.windows import Window, windows
 from derive.ir.program import (
     Call,
     FindRoot,
     Iterate,
+    Program,
     Require,
+    Statement,
+    binds,
+    reads,
 )
-from derive.ir.types import Type, type_of
+from derive.ir.symbols import symbols_of
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.parameters import limited_keys
+from derive.kinematics.parameters import ranges
 
 _PRINTER = ScalarPrinter()
 _TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
-_KINDS = {Type.BOOL: "bool", Type.INT: "int"}
 
 
-def keywords(parameters: tuple[Parameter, ...]) -> list[str]:
+def keywords(parameters: tuple[Parameter, ...]) -> str:
     """The head of `__init__`: every parameter as a keyword, with its default where it has one."""
     typed = (f"{p.name}: {_TYPES.get(p.role, 'float')}{_default(p)}" for p in parameters)
-    return fold(f"def __init__(self, *, {', '.join(typed)}) -> None:")
+    return f"def __init__(self, *, {', '.join(typed)}) -> None:"
 
 
-def accepted(parameters: tuple[Parameter, ...]) -> list[str]:
-    """The statement that takes every parameter in."""
-    return fold(f"values = self._accept({', '.join(p.name for p in parameters)})")
-
-
-def setup_head(parameters: tuple[Parameter, ...]) -> list[str]:
-    """The head of the setup function."""
-    typed = (f"{spelled(p.name)}: {_TYPES.get(p.role, 'float')}" for p in parameters)
-    return fold(f"def _setup(self, {', '.join(typed)}) -> Constants:")
-
-
-def setup_body(kin: Kinematics) -> list[str]:
-    """Conditions as errors that name the parameters, then the constants."""
-    inputs = [s.name for s in kin.setup.inputs]
+def setup_body(kin: Kinematics, read: Collection[str]) -> list[str]:
+    """Conditions as errors that name the parameters, then the constants that programs read."""
+    by_refusal = {window.refusal: window for window in windows(kin.mechanism)}
+    program = _own(kin, read)
     lines: list[str] = []
-    for statement in kin.setup.body:
+    for statement in program.body:
         if isinstance(statement, Iterate | Call | FindRoot):
             raise TypeError("what depends on parameters alone is straight-line: a setup program neither iterates nor calls")
-        lines += _refusal(statement, inputs) if isinstance(statement, Require) else binding_lines(statement, _PRINTER)
-    values = (f"{spelled(o.name)}={_PRINTER.print(o.value)}" for o in kin.setup.outputs)
-    return [*lines, *fold(f"return Constants({', '.join(values)})")]
+        window = by_refusal.get(statement.reason) if isinstance(statement, Require) and statement.reason else None
+        if window:
+            lines += _window(window, read)
+        elif isinstance(statement, Require):
+            lines += _refusal(statement, [p.name for p in kin.parameters])
+        else:
+            lines += binding_lines(statement, _PRINTER)
+    ends = {o.name for window in by_refusal.values() for o in window.outputs}
+    values = {f"self.{o.name}": _PRINTER.print(o.value) for o in program.outputs if o.name not in ends}
+    return [*assigned(_given(kin, program, by_refusal.values())), *lines, *assigned(values)]
 
 
-def constants(kin: Kinematics) -> dict[str, str]:
-    """The constants with their types."""
-    return {spelled(o.name): _KINDS.get(type_of(o.value), "float") for o in kin.setup.outputs}
+def _own(kin: Kinematics, read: Collection[str]) -> Program:
+    """The setup program without what is the same for every machine, and without what nobody reads."""
+    tested = ranges(kin.parameters)
+    elsewhere = {let.name for window in windows(kin.mechanism) for let in (*window.limits, *window.ends)}
+    outputs = tuple(o for o in kin.setup.outputs if o.name in read)
+    wanted = {s for o in outputs for s in symbols_of(o.value)}
+    body: list[Statement] = []
+    for statement in reversed(kin.setup.body):
+        bound = set(binds(statement))
+        if statement.reason not in tested if isinstance(statement, Require) else bound & wanted - elsewhere:
+            wanted |= reads(statement)
+            body.append(statement)
+    return replace(kin.setup, body=tuple(reversed(body)), outputs=outputs)
 
 
-def tested_limits(kin: Kinematics) -> list[str]:
-    """The unrolled functions; where limits are not tested, they are nowhere."""
-    keys = limited_keys(kin.mechanism)
-    bounds = [(f"lowest_{key}", -1) for key in keys] + [(f"highest_{key}", 1) for key in keys]
-    values = ", ".join(f"{name}={literal(side * float(UNLIMITED))}" for name, side in bounds)
-    functions = "self._all_checked, self._all_trusted, self._one_trusted"
-    if not bounds:
-        return [f"{functions} = unrolled(self._constants)"]
-    return [
-        "tested = self._constants",
-        "if not self.checks_limits:",
-        *fold(f"tested = tested._replace({values})", 4),
-        f"{functions} = unrolled(tested)",
-    ]
+def _given(kin: Kinematics, program: Program, found: Collection[Window]) -> dict[str, str]:
+    """The parameters that are read by their names: name → value."""
+    refusals = {window.refusal for window in found}
+    values = [o.value for o in program.outputs] + [e for window in found for f in window.fallback for e in f]
+    symbols = {s for value in values for s in symbols_of(value)}
+    for statement in program.body:
+        if not (isinstance(statement, Require) and statement.reason in refusals):
+            symbols |= reads(statement)
+    names = {s.name for s in symbols}
+    return {spelled(p.name): _value(p) for p in kin.parameters if p.name in names}
+
+
+def _value(parameter: Parameter) -> str:
+    text = f'p["{parameter.name}"]'
+    return f"bool({text})" if parameter.role is Role.FLAG else text
+
+
+def _window(window: Window, read: Collection[str]) -> list[str]:
+    """Where an axis may be; limits that are none are refused even where nobody reads them."""
+    targets = [f"self.{o.name}" if o.name in read else "_" for o in window.outputs]
+    call = f'machine._window("{window.key}"{_without_limits(window)})'
+    while targets and targets[-1] == "_":
+        targets.pop()
+    if not targets:
+        return [call]
+    return [f"{', '.join([*targets, '*_'] if len(targets) < 4 else targets)} = {call}"]
+
+
+def _without_limits(window: Window) -> str:
+    """The argument that says where an axis is to which no limits are given."""
+    if not window.fallback:
+        return ""
+    condition, low, high = window.fallback[-1]
+    interval = f"({_PRINTER.print(low)}, {_PRINTER.print(high)})"
+    return f", {interval}" if condition == sp.true else f", {interval} if {_PRINTER.print(condition)} else None"
 
 
 def _refusal(statement: Require, inputs: list[str]) -> list[str]:
     read = {s.name for s in statement.condition.free_symbols}
-    values = "".join(f", {spelled(name)}={spelled(name)}" for name in inputs if name in read)
+    names = "".join(f', "{name}"' for name in inputs if name in read)
     assert statement.reason is not None
     message = statement.reason.subject.name.replace('"', "'")
-    error = f'raise self._refusal("{message}"{values})'
-    return [*fold(f"if not ({conjunction([statement.condition])}):"), *fold(error, 4)]
+    return [f"if not ({conjunction([statement.condition])}):", f'    raise machine._refusal("{message}"{names})']
 
 
 def _default(parameter: Parameter) -> str:

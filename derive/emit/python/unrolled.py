@@ -1,4 +1,4 @@
-"""All branches of the inverse in one straight line: three functions of plain numbers."""
+"""All branches of the inverse in one straight line: two functions of plain numbers."""
 
 from __future__ import annotations
 
@@ -7,19 +7,21 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.emit.python.layout import fold, repeated, tuple_of
+from derive.emit.python.finish import Function, finish
+from derive.emit.python.layout import assigned, repeated, tuple_of
 from derive.emit.python.methods import POSITION, ROTATION, branch
 from derive.emit.python.printer import ScalarPrinter, primitives_in, spelled
 from derive.emit.python.program import (
     Argument,
     Method,
+    constant_lines,
     constants_of,
     item_lines,
     let_lines,
     unpacked,
     without_conversions,
 )
-from derive.emit.python.refusal import Refusals
+from derive.emit.python.refusal import Refusals, status_of
 from derive.ir.passes import untold
 from derive.ir.program import (
     Let,
@@ -51,7 +53,6 @@ from derive.optimize.unroll import (
     specialised,
     suffixed,
     unroll,
-    with_limits,
 )
 from derive.optimize.without_periods import any_turn
 from derive.solver.folds import far_from_folds
@@ -60,15 +61,9 @@ NO_OFFSETS = "no_offsets"
 """Whether all axes have their zero where the joints have it: then nothing is added to them."""
 _SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True, is_trusted=True)
 _FRAME = Argument("frame", "PlainFrame", (POSITION, ROTATION))
-
-
-@dataclass(frozen=True)
-class Function:
-    """A function of the module: its head, what it says of itself, its statements."""
-
-    head: list[str]
-    summary: str
-    body: list[str]
+_REFUSED = "refused"
+"""What stands for a refusal, by the number of its status: None, unless somebody asks for the status."""
+_WHERE_REFUSED = Argument(_REFUSED, "Sequence[Any] = NOTHING", ())
 
 
 @dataclass(frozen=True)
@@ -76,10 +71,28 @@ class Unrolled:
     """What the templates need: the functions, the constants that they read, the primitives that they call."""
 
     functions: tuple[Function, ...]
+    taken: list[str]
+    """The statements that take the constants."""
     constants: list[str]
     parts: list[str]
     """The statements that compute what depends on constants alone."""
     primitives: list[str]
+
+    @property
+    def can_finish(self) -> bool:
+        """Whether one of the functions chooses turns and tests limits."""
+        return len(self.functions) > 2
+
+    @property
+    def of_turns(self) -> list[str]:
+        """What the last of them reads of configurations."""
+        names = ("FIRST_TURN", "SECOND_TURN", "UNREACHABLE")
+        return [n for n in names if self.can_finish and any(n in line for line in self.functions[-1].body)]
+
+    @property
+    def names_status(self) -> bool:
+        """Whether all branches may refuse alike."""
+        return any("Status." in line for function in self.functions for line in function.body)
 
 
 def can_be_unrolled(kin: Kinematics) -> bool:
@@ -87,15 +100,19 @@ def can_be_unrolled(kin: Kinematics) -> bool:
     return is_straight(kin.branch) and is_straight(kin.limits)
 
 
+def is_trusted(kin: Kinematics) -> bool:
+    """Whether its one branch has a function for trusted input that always answers."""
+    return can_be_unrolled(kin) and not kin.branches and not has_folds(kin)
+
+
+def is_unrolled(kin: Kinematics) -> bool:
+    """Whether all its branches stand in one straight line. A machine that has none keeps its one trusted function."""
+    return bool(kin.branches) and can_be_unrolled(kin)
+
+
 def signs(kin: Kinematics) -> tuple[Sign, ...]:
     """The branch signs, with the names of the two branches."""
     return tuple(Sign(count(f"sigma_{b.name}"), b.names) for b in kin.branches)
-
-
-def every_branch(kin: Kinematics) -> Program:
-    """All branches, periods open, limits tested."""
-    program = with_twins(unroll(with_fewer_signs(_nearest(kin, with_limits(kin.branch, kin.limits))), signs(kin)))
-    return common_parts(program, signs(kin), _constants(kin))
 
 
 def branches(kin: Kinematics, one: Program) -> Program:
@@ -120,18 +137,30 @@ def _constants(kin: Kinematics) -> frozenset[str]:
 
 def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers. Near a fold they have no answer, an empty tuple: one branch after the other has."""
-    kin = replace(kin, branch=untold(far_from_folds(kin.derived_branch)), limits=untold(kin.limits))
-    methods, parts = _with_constant_parts(kin, _methods(kin))
+    kin = replace(kin, branch=untold(far_from_folds(kin.derived_branch)))
+    one = _trusted(kin)
+    methods, parts = _with_constant_parts(kin, _methods(kin, one))
     known = (*kin.setup.lets(), *parts)
-    functions = (_slots(kin, methods[0], known), _directions(kin, methods[1], known), _direction(kin, methods[2], known, parts))
-    read = {c for m in methods for c in constants_of(m)} | {s.name for p in parts for s in symbols_of(p.value)}
+    last = finish(kin, one)
+    functions = (_directions(kin, methods[0], known), _direction(kin, methods[1], known, parts), *((last,) if last else ()))
+    read = {c for f in functions for c in f.constants} | {s.name for p in parts for s in symbols_of(p.value)}
     constants = sorted(read - {p.name.name for p in parts})
     lines = [line for part in parts for line in let_lines(part, _SCALAR)]
-    if any(NO_OFFSETS in line for line in functions[2].body):
+    if any(NO_OFFSETS in line for line in functions[1].body):
         offsets = [c for c in constants if c in {j.offset.name for j in kin.mechanism.joints}]
-        lines += fold(f"{NO_OFFSETS} = not any(({', '.join(offsets)},))")
+        lines.append(f"{NO_OFFSETS} = not any({tuple_of(offsets)})")
     primitives = primitives_in([*lines, *(line for f in functions for line in f.body)])
-    return Unrolled(functions, [spelled(c) for c in constants], lines, primitives)
+    return Unrolled(functions, assigned({spelled(c): f"k.{c}" for c in constants}), constants, lines, primitives)
+
+
+def trusted_branch(kin: Kinematics) -> Function:
+    """The one branch of a machine without branches and folds, for input that is trusted: a method."""
+    kin = replace(kin, branch=untold(kin.branch))
+    method = _single(kin, _trusted(kin))
+    written = _Written.of(method, kin.setup.lets())
+    values = list(written.values.values())
+    lines = [*constant_lines(written.method), *item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)]
+    return written.function([*lines, f"return {_texts(values)}"])
 
 
 def _with_constant_parts(kin: Kinematics, methods: Sequence[Method]) -> tuple[list[Method], tuple[Let, ...]]:
@@ -140,25 +169,24 @@ def _with_constant_parts(kin: Kinematics, methods: Sequence[Method]) -> tuple[li
     return [replace(m, program=p) for m, p in zip(methods, programs, strict=True)], parts
 
 
-def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
-    position, rotation, sign_values, _, reference = branch(kin).arguments
-    optional = replace(reference, default=repeated("0.0", len(reference.shape)))
-    one = _trusted(kin)
-    single = any_turn(with_twins(one))
+def _methods(kin: Kinematics, one: Program) -> tuple[Method, Method]:
+    text = "Every slot, the axes in some turn, of input that is trusted."
     return (
-        Method(
-            "every_branch", "Every slot: its axes, or the number of its status.", every_branch(kin),
-            (position, rotation, reference), "tuple[Reals | int, ...]", (),
-        ),
-        Method(
-            "branches", "Every slot, the axes in some turn, of input that is trusted.", branches(kin, one),
-            (_FRAME, optional), "tuple[Reals | None, ...]", (),
-        ),
-        Method(
-            "branch", "One branch, the axes in some turn, of input that is trusted.", single,
-            (_FRAME, sign_values, optional), "Reals | None", (),
-        ),
-    )  # fmt: skip
+        Method("branches", text, branches(kin, one), (_FRAME, _optional(kin), _WHERE_REFUSED), "tuple[Any, ...]", ()),
+        _single(kin, one),
+    )
+
+
+def _single(kin: Kinematics, one: Program) -> Method:
+    sign_values = next(a for a in branch(kin).arguments if a.name == "signs")
+    text = "One branch, the axes in some turn, of input that is trusted."
+    return Method("branch", text, any_turn(with_twins(one)), (_FRAME, sign_values, _optional(kin)), "Reals | None", ())
+
+
+def _optional(kin: Kinematics) -> Argument:
+    """The reference, which may be left out."""
+    reference = branch(kin).arguments[-1]
+    return replace(reference, default=repeated("0.0", len(reference.shape)))
 
 
 def has_folds(kin: Kinematics) -> bool:
@@ -171,18 +199,14 @@ def _refusals(answer: Callable[[Status], str]) -> Refusals:
     return Refusals(lambda status: "()" if status is Status.OK else answer(status))
 
 
-def _slots(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
-    """The checked function."""
-    count = 2 ** len(kin.branches)
-    refusals = _refusals(lambda status: repeated(f"{list(Status).index(status)}", count))
-    written = _Written.of(method, known)
-    return written.function(_every(kin, written, refusals, _SCALAR, lambda refusal: refusal))
-
-
 def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
-    refusals = _refusals(lambda _: repeated("None", 2 ** len(kin.branches)))
+    """All branches, statements one branch after the other."""
+    count = 2 ** len(kin.branches)
+    refusals = _refusals(lambda status: repeated(f"{_REFUSED}[{status_of(status)}]", count))
     written = _Written.of(method, known)
-    return written.function(_every(kin, written, refusals, _DIRECTIONS, lambda _: "None"))
+    items, shorter = reused_names(written.items, list(written.values.values()), signs(kin))
+    values = {name: value.xreplace(dict(shorter)) for name, value in written.values.items()}
+    return written.function([*item_lines(items, refusals, _DIRECTIONS), f"return {_slots(kin, values)}"])
 
 
 def _direction(kin: Kinematics, method: Method, known: Sequence[Let], parts: Sequence[Let]) -> Function:
@@ -193,8 +217,8 @@ def _direction(kin: Kinematics, method: Method, known: Sequence[Let], parts: Seq
     zero |= {let.name: value for let in parts for value in [let.value.xreplace(zero)] if value.is_number}
     values, without = list(written.values.values()), [value.xreplace(zero) for value in written.values.values()]
     if without != values:
-        lines += [f"if {NO_OFFSETS}:", *fold(f"return {_texts(without)}", 4)]
-    return written.function([*lines, *fold(f"return {_texts(values)}")])
+        lines += [f"if {NO_OFFSETS}:", f"    return {_texts(without)}"]
+    return written.function([*lines, f"return {_texts(values)}"])
 
 
 def _texts(values: Iterable[sp.Expr]) -> str:
@@ -221,29 +245,17 @@ class _Written:
 
     def function(self, body: list[str]) -> Function:
         """The function with this body."""
-        method = self.method
-        head = fold(f"def {method.name}({', '.join(a.declared for a in method.arguments)}) -> {method.kind}:", 4)
-        return Function(head, method.summary, [*unpacked(method), *body])
+        method, body = self.method, [*unpacked(self.method), *body]
+        arguments = ", ".join(a.declared for a in method.arguments)
+        return Function(method.name, arguments, method.kind, method.summary, body, constants_of(method))
 
 
-def _every(
-    kin: Kinematics, written: _Written, refusals: Refusals, printer: ScalarPrinter, refused: Callable[[str], str]
-) -> list[str]:
-    """Statements one branch after the other, and all slots."""
-    items, shorter = reused_names(written.items, list(written.values.values()), signs(kin))
-    values = {name: value.xreplace(dict(shorter)) for name, value in written.values.items()}
-    return [*item_lines(items, refusals, printer), *_returned(kin, values, refused)]
-
-
-def _returned(kin: Kinematics, values: Mapping[str, sp.Expr], refused: Callable[[str], str]) -> list[str]:
+def _slots(kin: Kinematics, values: Mapping[str, sp.Expr]) -> str:
     """The axes of every slot, or what stands for its refusal."""
-    lines = ["return ("]
+    slots = []
     for choice in choices(len(kin.branches)):
         refusal = values[suffixed(REFUSAL, signs(kin), choice)]
-        axes = tuple_of([_DIRECTIONS.print(values[suffixed(j.axis.name, signs(kin), choice)]) for j in kin.mechanism.joints])
-        text = axes
-        if refusal != 0:
-            text = f"{axes} if {_SCALAR.whole(refusal)} == 0 else {refused(_SCALAR.whole(refusal))}"
-        lines += fold(f"({text})," if refusal != 0 else f"{text},", 4)
-    return [*lines, ")"]
-
+        axes = _texts(values[suffixed(j.axis.name, signs(kin), choice)] for j in kin.mechanism.joints)
+        number = _SCALAR.whole(refusal)
+        slots.append(axes if refusal == 0 else f"{axes} if {number} == 0 else {_REFUSED}[{number}]")
+    return tuple_of(slots)

@@ -14,10 +14,41 @@ from softkin._scalar import DEGREE
 from softkin._types import Status
 
 __all__ = [
-    "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Signs", "Turns", "Vector",
-    "StartedPrograms", "Truth", "Values", "Whole", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "opposite", "passed", "reasonable",
-    "require", "root", "select", "settled", "sin", "solve", "sqrt",
-]  # fmt: skip
+    "DEGREE",
+    "Array",
+    "Codes",
+    "OrientationPrograms",
+    "Programs",
+    "Real",
+    "Reals",
+    "Rotation",
+    "Signs",
+    "Turns",
+    "Vector",
+    "StartedPrograms",
+    "Truth",
+    "Values",
+    "Whole",
+    "absolute",
+    "advanced",
+    "atan2",
+    "cos",
+    "degrees",
+    "elsewhere",
+    "initial",
+    "nearest_on_arc",
+    "nearest_period",
+    "opposite",
+    "passed",
+    "reasonable",
+    "require",
+    "root",
+    "select",
+    "settled",
+    "sin",
+    "solve",
+    "sqrt",
+]
 
 Array: TypeAlias = NDArray[np.float64]
 Real: TypeAlias = Any

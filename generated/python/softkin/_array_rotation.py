@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from softkin._array import Codes, Real, Reals, Rotation, absolute, elsewhere, passed, require, select, sqrt
+from softkin._array import Codes, Real, Reals, Rotation, absolute, elsewhere, passed, reasonable, require, select, sqrt
 from softkin._types import Status
 
 
@@ -12,48 +12,42 @@ def made_rotations(rotation: Rotation) -> tuple[Rotation, Codes]:
     (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
     status = passed(rotation)
     # inputs must be numbers, and of reasonable size
-    require(
-        status,
-        (
-            (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-            & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-            & (absolute(r33) <= 1e9)
-        ),
-        Status.BAD_INPUT,
-    )
-    uneven_x = absolute(r11*r11 + r21*r21 + r31*r31 - 1.0)
-    uneven_y = absolute(r12*r12 + r22*r22 + r32*r32 - 1.0)
-    uneven_z = absolute(r13*r13 + r23*r23 + r33*r33 - 1.0)
-    askew_xy = absolute(r11*r12 + r21*r22 + r31*r32)
-    askew_xz = absolute(r11*r13 + r21*r23 + r31*r33)
-    askew_yz = absolute(r12*r13 + r22*r23 + r32*r33)
+    require(status, reasonable(r11, r12, r13, r21, r22, r23, r31, r32, r33), Status.BAD_INPUT)
+    uneven_x = absolute(r11 * r11 + r21 * r21 + r31 * r31 - 1.0)
+    uneven_y = absolute(r12 * r12 + r22 * r22 + r32 * r32 - 1.0)
+    uneven_z = absolute(r13 * r13 + r23 * r23 + r33 * r33 - 1.0)
+    askew_xy = absolute(r11 * r12 + r21 * r22 + r31 * r32)
+    askew_xz = absolute(r11 * r13 + r21 * r23 + r31 * r33)
+    askew_yz = absolute(r12 * r13 + r22 * r23 + r32 * r33)
 
     def elsewhere_made_r11(r11: Real, r13: Real, r21: Real, r23: Real, r31: Real, r33: Real) -> Reals:
-        length_z = sqrt(r13*r13 + r23*r23 + r33*r33)  # z keeps its direction, which is that of the tool
+        length_z = sqrt(r13 * r13 + r23 * r23 + r33 * r33)  # z keeps its direction, which is that of the tool
         divisor_z = select(length_z > 0.5, length_z, 1.0)
-        unit_z1 = r13/divisor_z
-        unit_z2 = r23/divisor_z
-        unit_z3 = r33/divisor_z
-        along_z = r11*unit_z1 + r21*unit_z2 + r31*unit_z3
-        across_z1 = r11 - along_z*unit_z1
-        across_z2 = r21 - along_z*unit_z2
-        across_z3 = r31 - along_z*unit_z3
+        unit_z1 = r13 / divisor_z
+        unit_z2 = r23 / divisor_z
+        unit_z3 = r33 / divisor_z
+        along_z = r11 * unit_z1 + r21 * unit_z2 + r31 * unit_z3
+        across_z1 = r11 - along_z * unit_z1
+        across_z2 = r21 - along_z * unit_z2
+        across_z3 = r31 - along_z * unit_z3
         # x is made perpendicular to z
-        length_x = sqrt(across_z1*across_z1 + across_z2*across_z2 + across_z3*across_z3)
+        length_x = sqrt(across_z1 * across_z1 + across_z2 * across_z2 + across_z3 * across_z3)
         divisor_x = select(length_x > 0.5, length_x, 1.0)
-        made_r11 = across_z1/divisor_x
-        made_r12 = (across_z3*unit_z2 - across_z2*unit_z3)/divisor_x
-        made_r21 = across_z2/divisor_x
-        made_r22 = (across_z1*unit_z3 - across_z3*unit_z1)/divisor_x
-        made_r31 = across_z3/divisor_x
-        made_r32 = (across_z2*unit_z1 - across_z1*unit_z2)/divisor_x
+        made_r11 = across_z1 / divisor_x
+        made_r12 = (across_z3 * unit_z2 - across_z2 * unit_z3) / divisor_x
+        made_r21 = across_z2 / divisor_x
+        made_r22 = (across_z1 * unit_z3 - across_z3 * unit_z1) / divisor_x
+        made_r31 = across_z3 / divisor_x
+        made_r32 = (across_z2 * unit_z1 - across_z1 * unit_z2) / divisor_x
         return (made_r11, made_r12, unit_z1, made_r21, made_r22, unit_z2, made_r31, made_r32, unit_z3)
 
     made_r11, made_r12, made_r13, made_r21, made_r22, made_r23, made_r31, made_r32, made_r33 = elsewhere(
-        (
-            (askew_xy <= 1e-12) & (askew_xz <= 1e-12) & (askew_yz <= 1e-12) & (uneven_x <= 1e-12)
-            & (uneven_y <= 1e-12) & (uneven_z <= 1e-12)
-        ),
+        (askew_xy <= 1e-12)
+        & (askew_xz <= 1e-12)
+        & (askew_yz <= 1e-12)
+        & (uneven_x <= 1e-12)
+        & (uneven_y <= 1e-12)
+        & (uneven_z <= 1e-12),
         (r11, r12, r13, r21, r22, r23, r31, r32, r33),
         elsewhere_made_r11,
         (r11, r13, r21, r23, r31, r33),
@@ -62,18 +56,18 @@ def made_rotations(rotation: Rotation) -> tuple[Rotation, Codes]:
     # columns not at right angles; was the frame converted from REAL?
     require(
         status,
-        (
-            (askew_xy <= 0.0001) & (askew_xz <= 0.0001) & (askew_yz <= 0.0001) & (uneven_x <= 0.0001)
-            & (uneven_y <= 0.0001) & (uneven_z <= 0.0001)
-        ),
+        (askew_xy <= 0.0001)
+        & (askew_xz <= 0.0001)
+        & (askew_yz <= 0.0001)
+        & (uneven_x <= 0.0001)
+        & (uneven_y <= 0.0001)
+        & (uneven_z <= 0.0001),
         Status.BAD_INPUT,
     )
     # a right-handed frame
     require(
-        status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
+        status,
+        r11 * (r22 * r33 - r23 * r32) + (r13 * r32 - r12 * r33) * r21 + (r12 * r23 - r13 * r22) * r31 > 0.0,
         Status.BAD_INPUT,
     )
-    return (
-        ((made_r11, made_r12, made_r13), (made_r21, made_r22, made_r23), (made_r31, made_r32, made_r33)),
-        status,
-    )
+    return ((made_r11, made_r12, made_r13), (made_r21, made_r22, made_r23), (made_r31, made_r32, made_r33)), status

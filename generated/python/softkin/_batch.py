@@ -148,7 +148,8 @@ def _chosen(robot: Mechanism, programs: Programs, poses: Poses, chosen: Configur
         return _named(robot, programs, poses, chosen)
     axes, status = np.full((len(robot.AXES), poses.count), np.nan), np.full(poses.count, Status.BAD_INPUT, np.uint8)
     for mask, solve, size in (
-        (named, _named, CHUNK), (chosen.are_bytes & ~named, _nearest, EVERY_SLOT // 2**robot.BRANCHES)
+        (named, _named, CHUNK),
+        (chosen.are_bytes & ~named, _nearest, EVERY_SLOT // 2**robot.BRANCHES),
     ):
         for rows in _pieces(mask, size):
             found, outcome = solve(robot, programs, poses.at(rows, len(status[rows])), chosen.at(rows))

@@ -24,7 +24,7 @@ GAP = 1e-6
 NEAR_ZERO = 0.5
 """A cubic hides two roots where it turns back below this share of the values at the ends."""
 BENT = 0.125
-"""So much of how slopes differ over a cell their tangents may stay away from zero, and there may be a root: it has kinks."""
+"""So much of how slopes differ over a cell their tangents may stay away from zero where a root may be: it has kinks."""
 SEAM = 1e-3
 """No cell is cut nearer to where the two sides meet: there a slope has no digits."""
 ASIDE = 0.47
@@ -155,7 +155,8 @@ def _hides_roots(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Fl
 
 
 def _comes_back(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Flags:
-    """Whether a value that has one sign at both ends heads for zero at both, and its tangents meet beyond, or nearly there.
+    """Whether a value that has one sign at both ends heads for zero at both, and its tangents meet beyond,
+    or nearly there.
 
     Where they do not meet in between it is bent both ways, and nobody knows. It has kinks, too: tangents are no bound.
     """

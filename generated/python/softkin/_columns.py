@@ -59,7 +59,9 @@ class Table:
         self._rotations = None
         if robot.READS_ROTATION:
             if rotations is None:
-                raise KinematicsError(Status.BAD_INPUT, f"{robot.NAME}: rotations are needed: this mechanism reads them")
+                raise KinematicsError(
+                    Status.BAD_INPUT, f"{robot.NAME}: rotations are needed: this mechanism reads them"
+                )
             self._rotations = numbers(rotations, self.count, (3, 3), "rotations").reshape(self.count, 9)
 
     def at(self, rows: slice) -> Poses:

@@ -20,6 +20,8 @@ EDGE = 1e-9
 """How far (degrees) the intervals of the periods are shifted down, so that rounding does not cross an edge."""
 FIRST_TURN, SECOND_TURN = -180.0 - EDGE, 180.0 - EDGE
 """Where the turn of number 1 begins, and the next one (degrees)."""
+UNREACHABLE = int(Status.UNREACHABLE)
+"""The number of a slot that has an axis beyond its limits."""
 TIE = 1e-6
 """An automatic choice takes a later slot only where its squared distance (degrees) is smaller by more than this."""
 

@@ -23,6 +23,7 @@ from softkin._configuration import (
 )
 from softkin._input import bytes_of, parameter_value, pose_of, position_of, reals, unusable
 from softkin._rotation import in_words, made_rotation
+from softkin._scalar import are_usable
 from softkin._solutions import Solutions
 from softkin._types import (
     Axis,
@@ -68,16 +69,30 @@ _OneBranch: TypeAlias = Callable[[Signs], Reals | Diagnosis]
 """The axes by the signs of the branches."""
 
 
-class EveryBranch(Protocol):
-    """Every slot: its axes, or the number of its status."""
+NOTHING = (None,) * len(_STATUSES)
+"""For each status None."""
+_NUMBERS = tuple(map(int, _STATUSES))
 
-    def __call__(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]: ...
+
+class Window(NamedTuple):
+    """Where an axis may be: anywhere, where limits are not tested."""
+
+    lowest: float
+    """The lower limit with its tolerance."""
+    highest: float
+    single: bool
+    """Whether the limits leave one value for every direction at most, with a gap that no step crosses."""
+    middle: float
+    """Of the range."""
 
 
 class Branches(Protocol):
     """`Mechanism.branches` of one machine."""
 
-    def __call__(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]: ...
+    def __call__(
+        self, frame: PlainFrame, reference: Reals | None = None, refused: Sequence[Any] = NOTHING
+    ) -> tuple[Any, ...]:
+        """refused: what stands in a slot that has no axes, by the number of its status."""
 
 
 class Branch(Protocol):
@@ -86,12 +101,16 @@ class Branch(Protocol):
     def __call__(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None: ...
 
 
+Finish: TypeAlias = Callable[[tuple[Reals | int, ...], Reals], tuple[Reals | int, ...]]
+"""From the slots of `Branches` and the reference: the axes on their turns, limits tested; statuses by their numbers."""
+
+
 class Unrolled(NamedTuple):
     """The functions of a machine whose inverse is one straight line for all branches."""
 
-    every_branch: EveryBranch
     branches: Branches
     branch: Branch
+    finish: Finish | None
 
 
 class Mechanism(ABC):
@@ -130,22 +149,46 @@ class Mechanism(ABC):
     parameters: Mapping[str, float]
     """The parameters as given: flags are bool, directions int."""
 
-    def _accept(self, *values: float) -> list[Any]:
-        """The parameters in the order of `PARAMETERS`, each in its type."""
-        found = [parameter_value(self.NAME, p, v) for p, v in zip(self.PARAMETERS, values, strict=True)]
-        self.parameters = MappingProxyType({p.name: v for p, v in zip(self.PARAMETERS, found, strict=True)})
-        self.checks_limits = bool(self.parameters["check_limits"])
-        return found
+    def _accept(self, given: Mapping[str, Any]) -> None:
+        """Take the parameters in, each in its type; raises NOT_INITIALIZED for the first that is not allowed.
 
-    def _refusal(self, condition: str, **values: float) -> KinematicsError:
-        """The error for parameters that do not meet a condition. The condition on a single one is its range."""
-        found = ", ".join(f"{name} = {value!r}" for name, value in values.items())
-        needed = condition  # a sentence
-        if not values:
+        given: the parameters by name, and maybe more.
+        """
+        found = {p.name: parameter_value(self.NAME, p, given[p.name]) for p in self.PARAMETERS}
+        self.parameters = MappingProxyType(found)
+        self.checks_limits = bool(found["check_limits"])
+        for parameter in self.PARAMETERS:
+            if not parameter.allows(found[parameter.name]):
+                raise self._refusal(parameter.meaning, parameter.name)
+
+    def _window(self, key: str, otherwise: tuple[float, float] | None = None) -> Window:
+        """Where an axis or another quantity may be, by the last part of the names of its limits.
+
+        otherwise: where that is if no limits are given; anywhere without it.
+        Raises NOT_INITIALIZED for what are no limits.
+        """
+        lower, upper = self.parameters[f"lower_{key}"], self.parameters[f"upper_{key}"]
+        is_given = abs(lower) + abs(upper) > 0.0
+        if is_given and not lower < upper:
+            raise self._refusal(f"lower_{key} below upper_{key}, or both 0", f"lower_{key}", f"upper_{key}")
+        low, high = (lower, upper) if is_given or otherwise is None else otherwise
+        tolerance = 1e-9 + 1e-9 * abs(low) + 1e-9 * abs(high)
+        middle = 0.5 * low + 0.5 * high
+        has_limits = is_given or otherwise is not None
+        single = has_limits and high - low <= 350 + tolerance
+        if not (has_limits and self.checks_limits):
+            return Window(-1e12, 1e12, single, middle)
+        return Window(low - tolerance, high + tolerance, single, middle)
+
+    def _refusal(self, condition: str, *names: str) -> KinematicsError:
+        """The error for parameters, by name, that do not meet a condition; that on a single one is its range."""
+        if not names:
             return KinematicsError(Status.NOT_INITIALIZED, f"{self.NAME}: the parameters must give {condition}")
-        if len(values) == 1:
-            (parameter,) = (p for p in self.PARAMETERS if p.name in values)
-            needed = f"it must be {parameter.range} ({condition.removeprefix(parameter.name + ': ')})"
+        found = ", ".join(f"{name} = {self.parameters[name]!r}" for name in names)
+        needed = condition  # a sentence
+        if len(names) == 1:
+            (parameter,) = (p for p in self.PARAMETERS if p.name in names)
+            needed = f"it must be {parameter.range} ({condition})"
         return KinematicsError(Status.NOT_INITIALIZED, f"{self.NAME}: {found} is not allowed: {needed}")
 
     def __repr__(self) -> str:
@@ -185,14 +228,16 @@ class Mechanism(ABC):
         """The axis values of a frame.
 
         frame: position (3) and rotation (3 rows of 3), a `Frame` or any pair of sequences. A rotation to few digits, as
-        from single precision, is repaired: the direction of z is kept. Of R^T R - I no entry may be beyond 0.0001.
-        configuration: see `CONFIGURATION`; without one, `DEFAULT_CONFIGURATION`. Where it leaves a branch open,
-        the nearest to the reference is taken. Where it leaves a period open, an axis whose limits are at most
-        350 degrees apart takes its one value inside them; any other the value nearest to the reference. Limits
-        refuse then, they never choose again: for a move from point to point name the period of an axis with a wider range.
+        from single precision, is repaired: the direction of z is kept. Of R^T R - I no entry may be beyond
+        0.0001.
+        configuration: see `CONFIGURATION`; without one, `DEFAULT_CONFIGURATION`. Where it leaves a branch open, the
+        nearest to the reference is taken. Where it leaves a period open, an axis whose limits are at most
+        350 degrees apart takes its one value inside them; any other the value nearest to the reference.
+        Limits refuse then, they never choose again: for a move from point to point name the period of an axis with a
+        wider range.
         reference: one value an axis, the present axis values as a rule; without one, zeros.
-        Raises BAD_INPUT, UNREACHABLE (out of reach, or beyond a limit), or IMPOSSIBLE. The `refusal` of the error is what
-        `diagnose` returns: which quantity, how much is missing, and whether another turn is inside.
+        Raises BAD_INPUT, UNREACHABLE (out of reach, or beyond a limit), or IMPOSSIBLE. The `refusal` of the error is
+        what `diagnose` returns: which quantity, how much is missing, and whether another turn is inside.
         """
         position, rows = self._pose(frame)
         near = self._near(reference)
@@ -207,7 +252,8 @@ class Mechanism(ABC):
         """Every branch of the inverse, in fixed slots: branch 1 before branch 2, the first byte varies fastest.
 
         Periods are open, as in `inverse`. No slot is left out: one without axes has the status instead, limits
-        included; why, and whether another turn is inside, says `diagnose` for the branches of its configuration. Raises BAD_INPUT only for what has not the form of a frame. The result is as a tuple of them.
+        included; why, and whether another turn is inside, says `diagnose` for the branches of its configuration. Raises
+        BAD_INPUT only for what has not the form of a frame. The result is as a tuple of them.
         """
         position, rows = self._pose(frame)
         near, rotation = self._near(reference), self._made(rows)
@@ -219,8 +265,8 @@ class Mechanism(ABC):
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None where it does not reach.
 
-        The input is trusted: plain tuples of floats, with a rotation that is one to all digits. An axis that no other moves with
-        is in any of its turns, and limits are not tested.
+        The input is trusted: plain tuples of floats, with a rotation that is one to all digits. An axis that no other
+        moves with is in any of its turns, and limits are not tested.
         """
         return tuple([self.branch(frame, signs, reference) for _, signs in slots((AUTOMATIC,) * self.BRANCHES)])
 
@@ -239,15 +285,17 @@ class Mechanism(ABC):
         """Why `inverse` refuses these arguments, without raising: which quantity, and how much is missing.
 
         Where the configuration leaves branches open and none has a solution, it speaks of the first of them. Where the
-        turn of an axis is beyond its limits and another one is not, `turn` is the number of that one: named in the period
-        byte, it is answered if nothing else refuses.
+        turn of an axis is beyond its limits and another one is not, `turn` is the number of that one: named in the
+        period byte, it is answered if nothing else refuses.
         """
         position, rows = self._pose(frame)
         near = self._near(reference)
         branches, turns = self._read(configuration)
         for place, byte in zip(self._branch_bytes, branches, strict=True):
             if byte not in (0, 1, 2, 3):
-                return Diagnosis(Status.BAD_INPUT, "byte {byte} of the configuration means nothing".format(byte=place), 0.0)
+                return Diagnosis(
+                    Status.BAD_INPUT, "byte {byte} of the configuration means nothing".format(byte=place), 0.0
+                )
         rotation = self._made(rows)
         if isinstance(rotation, Diagnosis):
             return rotation
@@ -313,7 +361,8 @@ class Mechanism(ABC):
     ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
         """Every branch of N rows → axes (N, slots, n), statuses (N, slots), in the slots of `inverse_all`.
 
-        The input is that of `inverse_batch`. A slot whose status is not OK holds NaN. Raises BAD_INPUT for a wrong shape.
+        The input is that of `inverse_batch`. A slot whose status is not OK holds NaN. Raises BAD_INPUT for a wrong
+        shape.
         """
         from softkin import _batch
 
@@ -327,6 +376,16 @@ class Mechanism(ABC):
             axes = self._branch(position, rotation, signs, open_turns, reference)
             found.append(self._inside(axes))
         return tuple(found)
+
+    def _finished(
+        self, solve: Branches, finish: Finish | None, position: Vector, rotation: Rotation, reference: Reals
+    ) -> tuple[Reals | int, ...]:
+        """The same by functions of the machine; where these have no answer, one branch after the other."""
+        if finish is not None and are_usable(*position, *reference):
+            found = solve((position, rotation), reference, _NUMBERS)
+            if found:
+                return finish(found, reference)
+        return Mechanism._every_branch(self, position, rotation, reference)
 
     def _inside(self, axes: Reals | Diagnosis) -> Reals | int:
         """Axes inside their limits, or the number of the status."""

@@ -146,10 +146,12 @@ class Coupled(Mechanism):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
-        """The axes of both: those that carry to a point, and those that turn as the flange sees it; reasons name the part."""
+        """The axes of both: what carries to a point, and what turns as the flange sees it; reasons name the part."""
         solve = self._position_first if self._flange is None else self._orientation_first
         axes = solve(position, rotation, *self._split(signs, turns, reference))
-        return Diagnosis(axes, f"{self.orientation_part.NAME}: its end point", 0.0) if isinstance(axes, Status) else axes
+        return (
+            Diagnosis(axes, f"{self.orientation_part.NAME}: its end point", 0.0) if isinstance(axes, Status) else axes
+        )
 
     def _split(self, signs: Signs, turns: Turns, reference: Reals) -> tuple[_Choice, _Choice]:
         """What each part is given."""

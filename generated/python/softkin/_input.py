@@ -30,7 +30,9 @@ def pose_of(frame: FrameLike) -> tuple[Vector, Rotation]:
     if type(position) is tuple and type(rows) is tuple and len(position) == len(rows) == 3:
         first, second, third = rows
         if (
-            type(first) is tuple and type(second) is tuple and type(third) is tuple
+            type(first) is tuple
+            and type(second) is tuple
+            and type(third) is tuple
             and len(first) == len(second) == len(third) == 3
         ):
             (x, y, z), (a, b, c), (d, e, f), (g, h, i) = position, first, second, third

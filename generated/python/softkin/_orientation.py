@@ -71,5 +71,5 @@ class OrientationKinematics(Mechanism):
 
 
 def turning_axis(image: OrientationImage) -> tuple[Vector, Vector]:
-    """The line about which a flange turns, as the flange and as the machine see it; zero where there is no such line."""
+    """The line about which a flange turns, as the flange and as the machine see it; zero where there is none."""
     return (image.flange_axis, image.base_axis) if image.freedom == "one" else (_ZERO, _ZERO)

@@ -2,7 +2,8 @@
 """All roots of a trial along one joint, on plain numbers: the rules are those of `_cells` and `_roots`, for arrays.
 
 The circle is cut into cells until each holds one root at most. A cell is a list of its map (joint = base + scale s, or
-base + scale s² with the other side of the two roots at s < 0), how often it was cut, and both ends: s, and what the trial says.
+base + scale s² with the other side of the two roots at s < 0), how often it was cut, and both ends: s, and what the
+trial says.
 """
 
 from __future__ import annotations
@@ -44,11 +45,18 @@ Cell = tuple[float, float, bool, int, float, Said, float, Said]
 
 
 def nearest_root(
-    trial: Callable[[Values], Any], finish: Callable[[Values], Any], start: float, wanted: bool,
-    trial_given: Values, finish_given: Values, count: int, scan: Scan,
+    trial: Callable[[Values], Any],
+    finish: Callable[[Values], Any],
+    start: float,
+    wanted: bool,
+    trial_given: Values,
+    finish_given: Values,
+    count: int,
+    scan: Scan,
 ) -> Values:
-    """True and what `finish` says at the root that fits and is nearest to the start; False and zeros where there is none, or
-    none is wanted.
+    """True and what `finish` says at the root that fits and is nearest to the start; else False and zeros.
+
+    That is where there is none, or none is wanted.
 
     What is given are values; the parts of a place stand there by their names.
     """
@@ -59,8 +67,14 @@ def nearest_root(
 
 
 def every_root(
-    trial: Callable[[Values], Any], finish: Callable[[Values], Any], start: float, wanted: bool,
-    trial_given: Values, finish_given: Values, count: int, scan: Scan,
+    trial: Callable[[Values], Any],
+    finish: Callable[[Values], Any],
+    start: float,
+    wanted: bool,
+    trial_given: Values,
+    finish_given: Values,
+    count: int,
+    scan: Scan,
 ) -> list[Values]:
     """What `finish` says at all roots that fit, the nearest to the start first."""
     every = _finished(trial, finish, start, trial_given, finish_given, scan, _TRIALS) if wanted else ()
@@ -68,8 +82,13 @@ def every_root(
 
 
 def _finished(
-    trial: Callable[[Values], Any], finish: Callable[[Values], Any], start: float, trial_given: Values, finish_given: Values,
-    scan: Scan, most: int,
+    trial: Callable[[Values], Any],
+    finish: Callable[[Values], Any],
+    start: float,
+    trial_given: Values,
+    finish_given: Values,
+    scan: Scan,
+    most: int,
 ) -> Iterator[Values]:
     search, at, looked_at = _Search(_of(trial, trial_given)), _of(finish, finish_given), 0
     for shift in SHIFTS:
@@ -130,7 +149,9 @@ class _Search:
         said = [(value, slope * width, guard, rate * width, *rest) for value, slope, guard, rate, *rest in ends]
         self.offer(start, 0.0, False, 0.0, self.said(start, 0.0, False, 0.0))
         for k in range(CELLS):
-            cells: list[Cell] = [(start + (k + shift) * width, width, False, 0, 0.0, said[k], 1.0, said[(k + 1) % CELLS])]
+            cells: list[Cell] = [
+                (start + (k + shift) * width, width, False, 0, 0.0, said[k], 1.0, said[(k + 1) % CELLS])
+            ]
             while cells:
                 cells += self.cut(cells.pop())
         return self.found
@@ -218,7 +239,7 @@ class _Search:
         return cells
 
     def offer(self, base: float, scale: float, curved: bool, s: float, said: Said) -> None:
-        """A trial next to a root is offered, whatever is around it: where the guard vanishes, value has half its digits."""
+        """A trial next to a root is offered whatever is around: where the guard vanishes half the digits are lost."""
         value, guard = abs(said[0]), said[2]
         if (value <= VANISHING and guard >= 0.0) or (value <= NEXT and abs(guard) <= VANISHING):
             place = self.place(base, scale, curved, s)
@@ -228,7 +249,8 @@ class _Search:
     def closing(self, cell: Cell, column: int, level: float) -> tuple[float, float, float, Said]:
         """Close in on where a column passes a level: both ends, the better one, and what the trial says there.
 
-        Newton's method from the end that is nearer to zero; halved where that leads out of the cell, and every third time.
+        Newton's method from the end that is nearer to zero; halved where that leads out of the cell, and
+        every third time.
         """
         base, scale, curved, _, low, first, high, last = cell
         a, b = first[column] - level, last[column] - level
@@ -308,7 +330,8 @@ def _hides_roots(f: float, df: float, f1: float, df1: float, width: float) -> bo
 
 
 def _comes_back(f: float, df: float, f1: float, df1: float, width: float) -> bool:
-    """Whether a value that has one sign at both ends heads for zero at both, and its tangents meet beyond, or nearly there.
+    """Whether a value that has one sign at both ends heads for zero at both, and its tangents meet beyond,
+    or nearly there.
 
     Where they do not meet in between it is bent both ways, and nobody knows. It has kinks, too: tangents are no bound.
     """

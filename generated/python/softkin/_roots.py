@@ -33,7 +33,7 @@ T = TypeVar("T")
 CELLS = 72
 """The circle is cut into so many cells at first."""
 SHIFTS = (0.5, 0.25)
-"""How far behind the start the first cell begins, in cells; where no root fits, the circle is cut otherwise, once more."""
+"""How far behind the start the first cell begins, in cells; where no root fits, the circle is cut again, otherwise."""
 ROUNDS = 50
 """Cells are cut again at most so often."""
 CLOSING = 60
@@ -48,7 +48,7 @@ _THIRD = 2.0 * np.pi / 3.0
 RIM = 0.999
 """How much of the strip on which the two sides are one is looked at."""
 VANISHING = 1e-10
-"""A trial that leaves no more than this is offered as a root, whatever there is around it: the reference itself, for one."""
+"""A trial that leaves no more than this is offered as a root, whatever is around it: the reference itself, for one."""
 Finish = Callable[[At], tuple[Flags, Reals]]
 """Whether a root fits, and what is said of it."""
 
@@ -114,7 +114,7 @@ def _vanishing(cells: Cells) -> At:
 
 
 def _vanishes(said: Reals) -> Flags:
-    """Whether a trial is next to a root, whatever there is around it: where the guard vanishes, value has half its digits."""
+    """Whether a trial is next to a root, whatever is around it: where the guard vanishes half the digits are lost."""
     value, guard = np.abs(said[:, VALUE]), said[:, GUARD]
     return np.asarray((value <= VANISHING) & (guard >= 0.0) | (value <= NEXT) & (np.abs(guard) <= VANISHING))
 
@@ -199,7 +199,10 @@ def _closing(trial: Trial, cells: Cells, column: int, level: Reals) -> tuple[Rea
         new[:, 0] -= level[going]
         same = (new[:, 0] < 0.0) == (first[going, 0] < 0.0)
         low[going], high[going] = np.where(same, s, a), np.where(same, b, s)
-        first[going], last[going] = np.where(same[:, None], new, first[going]), np.where(same[:, None], last[going], new)
+        first[going], last[going] = (
+            np.where(same[:, None], new, first[going]),
+            np.where(same[:, None], last[going], new),
+        )
         settled = np.abs(new[:, 0]) <= FINEST * np.abs(new[:, 1])  # the next step would be rounding
         done = settled | (new[:, 0] == 0.0) | (high[going] - low[going] <= FINEST)
         going = going[~done]
@@ -248,17 +251,25 @@ def _places(cells: Cells, s: Reals) -> At:
 def _all(places: Sequence[At]) -> At:
     return At(*map(np.concatenate, zip(*places, strict=True)))
 
+
 _ROWS = 1024
 """Rows at a time: what belongs to a trial stays in the cache."""
 Values = tuple[Any, ...]
 
 
 def nearest_root(
-    trial: Callable[[Values, Any], Values], finish: Callable[[Values, Any], Values], start: Any, wanted: Any, status: Any,
-    trial_given: Values, finish_given: Values, count: int,
+    trial: Callable[[Values, Any], Values],
+    finish: Callable[[Values, Any], Values],
+    start: Any,
+    wanted: Any,
+    status: Any,
+    trial_given: Values,
+    finish_given: Values,
+    count: int,
 ) -> Values:
-    """True and what `finish` says at the root that fits and is nearest to the start; False and zeros where there is none, or
-    none is wanted.
+    """True and what `finish` says at the root that fits and is nearest to the start; else False and zeros.
+
+    That is where there is none, or none is wanted.
 
     What is given are values for every row, or one for all; the parts of a place stand there by their names.
     """
@@ -300,7 +311,9 @@ def _of(
 
     def at(place: At) -> list[Any]:
         there = dict(zip(("tried", "side", "freed", "freed_angle"), place[1:], strict=True))
-        values = tuple(there[v] if isinstance(v, str) else v if isinstance(v, float | int) else v[place.rows] for v in fixed)
+        values = tuple(
+            there[v] if isinstance(v, str) else v if isinstance(v, float | int) else v[place.rows] for v in fixed
+        )
         with np.errstate(all="ignore"):
             said = program(values, np.zeros(len(place.rows), np.uint8))
         return [np.broadcast_to(v, place.joint.shape) for v in said]

@@ -8,8 +8,19 @@ from math import atan2 as arctan2
 from math import cos, floor, nan, pi, sin, sqrt
 
 __all__ = [
-    "DEGREE", "RADIAN", "arctan2", "atan2", "cos", "nearest_on_arc", "nearest_period", "root", "sin", "solve", "sqrt",
-]  # fmt: skip
+    "DEGREE",
+    "RADIAN",
+    "are_usable",
+    "arctan2",
+    "atan2",
+    "cos",
+    "nearest_on_arc",
+    "nearest_period",
+    "root",
+    "sin",
+    "solve",
+    "sqrt",
+]
 
 DEGREE = pi / 180.0
 """One degree in radians."""
@@ -19,6 +30,14 @@ _TURN = 2.0 * pi
 _MOST_TURNS = 1e18
 """More turns are no number of turns: then there is no nearest angle."""
 _HALF_AND_EDGE = 180.0 + 1e-9
+
+
+def are_usable(*numbers: float) -> bool:
+    """Whether all are numbers of reasonable size."""
+    for number in numbers:
+        if not -1e9 <= number <= 1e9:
+            return False
+    return True
 
 
 def root(x: float) -> float:

@@ -8,11 +8,23 @@ from collections.abc import Sequence
 
 from softkin._configuration import AUTOMATIC, Slot, slots
 from softkin._core import Mechanism
-from softkin._types import Diagnosis, FrameLike, Numbers, Reals, Rotation, Signs, Solution, Status, Turns, Values, Vector
+from softkin._types import (
+    Diagnosis,
+    FrameLike,
+    Numbers,
+    Reals,
+    Rotation,
+    Signs,
+    Solution,
+    Status,
+    Turns,
+    Values,
+    Vector,
+)
 
 _SAME = 2e-3
-"""Axes nearer than this (degrees, lengths) are one solution of a branch: where the search only touches zero, it is met again
-beside it, and two solutions of a branch have one of another between them."""
+"""Axes nearer than this (degrees, lengths) are one solution of a branch: where the search only touches zero, it is met
+again beside it, and two solutions of a branch have one of another between them."""
 _COINCIDE = 1e-11
 """A solution whose margin is smaller lies on both branches."""
 

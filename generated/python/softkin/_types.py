@@ -47,16 +47,20 @@ class Status(IntEnum):
     OK = (0, "SMC_NO_ERROR", "no error")
     NOT_INITIALIZED = (1, "SMC_TRAFO_NOT_INITIALIZED", "a parameter is not allowed")
     BAD_INPUT = (
-        2, "SMC_CP_ERROR_CREATING_PARAM_TRANSFORM",
+        2,
+        "SMC_CP_ERROR_CREATING_PARAM_TRANSFORM",
         "numbers must be finite and at most 1e9 in size, and a rotation must be one",
     )
     UNREACHABLE = (3, "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS", "out of reach or beyond a limit")
     IMPOSSIBLE = (
-        4, "SMC_TRAFO_INVALID_CONSTELLATION",
+        4,
+        "SMC_TRAFO_INVALID_CONSTELLATION",
         "the mechanism cannot be assembled there, or a joint is undetermined",
     )
     INVALID_COUPLING = (
-        5, "SMC_TRAFO_INVALID_COUPLING", "this pair of position and orientation kinematics is impossible",
+        5,
+        "SMC_TRAFO_INVALID_COUPLING",
+        "this pair of position and orientation kinematics is impossible",
     )
 
 
@@ -150,6 +154,21 @@ class Axis:
     """Whether the configuration has a period number for it."""
 
 
+_USUAL: dict[str, dict[str, Any]] = {
+    "length": {"unit": "u", "low": 0.0, "high": 1000000000.0, "low_is_open": True, "default": None},
+    "signed length": {"unit": "u", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": None},
+    "distance": {"unit": "u", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
+    "pitch": {"unit": "u/rev", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
+    "gear": {"unit": "u/deg", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
+    "coupling": {"unit": "1", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
+    "ratio": {"unit": "1", "low": 0.0, "high": 1.0, "low_is_open": False, "default": 0.0},
+    "flag": {"unit": "", "low": 0.0, "high": 1.0, "low_is_open": False, "default": 0.0},
+    "sign": {"unit": "", "low": -1.0, "high": 1.0, "low_is_open": False, "default": 1.0},
+    "angle": {"unit": "deg", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
+}
+"""What a parameter of a kind is, unless its own entry says otherwise."""
+
+
 @dataclass(frozen=True, slots=True)
 class Parameter:
     """A parameter of a mechanism: a keyword of its class."""
@@ -164,6 +183,21 @@ class Parameter:
     """Whether the value must be more than `low` and may not be equal to it."""
     default: float | None
     """None where the parameter must be given."""
+
+    @classmethod
+    def of(cls, kind: str, name: str, meaning: str, **unusual: Any) -> Self:
+        """A parameter of a kind; unusual: its unit, its range or its default, where they are not those of the kind."""
+        return cls(name=name, kind=kind, meaning=meaning, **{**_USUAL[kind], **unusual})
+
+    def allows(self, value: float) -> bool:
+        """Whether a number, a truth for a flag, is in the range."""
+        if self.kind == "flag":
+            return True
+        if self.kind == "sign":
+            return value in (1, -1)
+        if self.kind == "signed length" and not (value > 0.0 or value < 0.0):
+            return False
+        return (value > self.low if self.low_is_open else value >= self.low) and value <= min(self.high, 1e9)
 
     @property
     def range(self) -> str:
@@ -180,7 +214,8 @@ class Parameter:
 class ConfigurationByte:
     """A byte of the configuration.
 
-    A branch: 1 or 2, 0 automatic, 3 where both coincide. A period: the signed number of the turn, 0 open: see `Mechanism.inverse`.
+    A branch: 1 or 2, 0 automatic, 3 where both coincide. A period: the signed number of the turn, 0 open: see
+    `Mechanism.inverse`.
     """
 
     name: str

@@ -30,9 +30,11 @@ Singularities:
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 142 additions, 186 multiplications, 21 divisions, 0 square roots, 14 sines
     inverse: 76175 additions, 124235 multiplications, 6665 divisions, 3138 square roots, 5304 sines
-    inverse, all 16 branches open: 1218785 additions, 1987760 multiplications, 106640 divisions, 50208 square roots, 84864 sines
+    inverse, all 16 branches open: 1218785 additions, 1987760 multiplications, 106640 divisions, 50208 square
+    roots, 84864 sines
     repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 28 additions, 50 multiplications, 11 divisions, 3 square roots, 12 sines
+    a branch at a singular pose, more: 28 additions, 50 multiplications, 11 divisions, 3 square roots, 12
+    sines
     root scan along A6: at most 760 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
@@ -51,102 +53,55 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, solve, sqrt
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond_turn
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, solve, sqrt
 from softkin._root import every_root, nearest_root
 from softkin._search import SearchedInverse
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Values,
-    Vector,
-)
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array_programs.ac6_rzryryrxryrz_j6offset import ArrayPrograms
+    from softkin._types import Matrix, Reals, Rotation, Signs, Turns, Values, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    d1: float
-    a1: float
-    a2: float
-    a3: float
-    d4: float
-    j6_offset_x: float
-    d6: float
-    offset_a1: float
-    offset_a2: float
-    offset_a3: float
-    offset_a4: float
-    offset_a5: float
-    offset_a6: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    single_a1: bool
-    mid_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    single_a2: bool
-    mid_a2: float
-    lower_a3: float
-    upper_a3: float
-    unlimited_a3: bool
-    lowest_a3: float
-    highest_a3: float
-    single_a3: bool
-    mid_a3: float
-    lower_a4: float
-    upper_a4: float
-    unlimited_a4: bool
-    lowest_a4: float
-    highest_a4: float
-    single_a4: bool
-    mid_a4: float
-    lower_a5: float
-    upper_a5: float
-    unlimited_a5: bool
-    lowest_a5: float
-    highest_a5: float
-    single_a5: bool
-    mid_a5: float
-    lower_a6: float
-    upper_a6: float
-    unlimited_a6: bool
-    lowest_a6: float
-    highest_a6: float
-    single_a6: bool
-    mid_a6: float
-    machine_scale: float
-    effective_q3_tried: float
-    searched: bool
-    machine_scale_times_free_angle: float
-    a2_plus_effective_q3_tried: float
-    a2_minus_effective_q3_tried: float
-    d4_by_effective_q3_tried: float
-    a3_by_effective_q3_tried: float
-    size_of_j6_offset_x: float
-    part_of_fits: float
-    one_by_machine_scale: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        d1, a1, a2, a3, d4, j6_offset_x, d6 = p["d1"], p["a1"], p["a2"], p["a3"], p["d4"], p["j6_offset_x"], p["d6"]
+        offset_a1, offset_a2, offset_a3, offset_a4 = p["offset_a1"], p["offset_a2"], p["offset_a3"], p["offset_a4"]
+        offset_a5, offset_a6 = p["offset_a5"], p["offset_a6"]
+        self.lowest_a1, self.highest_a1, self.single_a1, self.mid_a1 = machine._window("a1")
+        self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
+        self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
+        self.lowest_a4, self.highest_a4, self.single_a4, self.mid_a4 = machine._window("a4")
+        self.lowest_a5, self.highest_a5, self.single_a5, self.mid_a5 = machine._window("a5")
+        self.lowest_a6, self.highest_a6, self.single_a6, self.mid_a6 = machine._window("a6")
+        machine_scale = a1 + a2 + d4  # characteristic length of the machine
+        effective_q3_tried = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
+        searched = abs(j6_offset_x) > 0.0  # whether to scan A6 for a root
+        machine_scale_times_free_angle = 1e-11 * machine_scale
+        a2_plus_effective_q3_tried = a2 + effective_q3_tried
+        a2_minus_effective_q3_tried = a2 - effective_q3_tried
+        d4_by_effective_q3_tried = d4 / effective_q3_tried
+        a3_by_effective_q3_tried = a3 / effective_q3_tried
+        size_of_j6_offset_x = abs(j6_offset_x)
+        part_of_fits = 0.5 * machine_scale * machine_scale / (sqrt(a3 * a3 + d4 * d4) * a2)
+        one_by_machine_scale = 1.0 / machine_scale
+        self.d1, self.a1, self.a2, self.a3, self.d4, self.j6_offset_x, self.d6 = d1, a1, a2, a3, d4, j6_offset_x, d6
+        self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
+        self.offset_a5, self.offset_a6, self.effective_q3_tried = offset_a5, offset_a6, effective_q3_tried
+        self.searched, self.machine_scale_times_free_angle = searched, machine_scale_times_free_angle
+        self.a2_plus_effective_q3_tried = a2_plus_effective_q3_tried
+        self.a2_minus_effective_q3_tried = a2_minus_effective_q3_tried
+        self.d4_by_effective_q3_tried = d4_by_effective_q3_tried
+        self.a3_by_effective_q3_tried, self.size_of_j6_offset_x = a3_by_effective_q3_tried, size_of_j6_offset_x
+        self.part_of_fits, self.one_by_machine_scale = part_of_fits, one_by_machine_scale
 
 
 class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
@@ -167,110 +122,32 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         Axis(name="A6", kind="rotary", unit="deg", meaning="Axis 6", multi_turn=True),
     )
     PARAMETERS = (
-        Parameter(
-            name="d1", kind="distance", unit="u", meaning="Height of axis A2 above the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="a1", kind="distance", unit="u", meaning="Axis A1 to axis A2, forward", low=0.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="a2", kind="length", unit="u", meaning="Upper arm, axis A2 to axis A3", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="a3", kind="distance", unit="u", meaning="Axis A3 to the axis of the forearm, up",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="d4", kind="length", unit="u", meaning="Forearm, to the wrist centre", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="j6_offset_x", kind="distance", unit="u", meaning="Wrist centre to axis A6, along X",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="d6", kind="distance", unit="u", meaning="Wrist centre to the flange, along axis A6",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a1", kind="angle", unit="deg", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="angle", unit="deg", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a3", kind="angle", unit="deg", meaning="A3: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a4", kind="angle", unit="deg", meaning="A4: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a5", kind="angle", unit="deg", meaning="A5: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a6", kind="angle", unit="deg", meaning="A6: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="angle", unit="deg", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="angle", unit="deg", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="angle", unit="deg", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="angle", unit="deg", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a3", kind="angle", unit="deg", meaning="A3: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a3", kind="angle", unit="deg", meaning="A3: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a4", kind="angle", unit="deg", meaning="A4: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a4", kind="angle", unit="deg", meaning="A4: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a5", kind="angle", unit="deg", meaning="A5: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a5", kind="angle", unit="deg", meaning="A5: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a6", kind="angle", unit="deg", meaning="A6: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a6", kind="angle", unit="deg", meaning="A6: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("distance", "d1", "Height of axis A2 above the base"),
+        Parameter.of("distance", "a1", "Axis A1 to axis A2, forward", low=0.0),
+        Parameter.of("length", "a2", "Upper arm, axis A2 to axis A3"),
+        Parameter.of("distance", "a3", "Axis A3 to the axis of the forearm, up"),
+        Parameter.of("length", "d4", "Forearm, to the wrist centre"),
+        Parameter.of("distance", "j6_offset_x", "Wrist centre to axis A6, along X"),
+        Parameter.of("distance", "d6", "Wrist centre to the flange, along axis A6"),
+        Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a3", "A3: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a4", "A4: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a5", "A5: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a6", "A6: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a4", "A4: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a4", "A4: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a5", "A5: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a5", "A5: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a6", "A6: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a6", "A6: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="shoulder", kind="branch", branches=("front", "back"), default=1),
@@ -295,12 +172,33 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
     def __init__(
-        self, *, d1: float = 0.0, a1: float = 0.0, a2: float, a3: float = 0.0, d4: float,
-        j6_offset_x: float = 0.0, d6: float = 0.0, offset_a1: float = 0.0, offset_a2: float = 0.0,
-        offset_a3: float = 0.0, offset_a4: float = 0.0, offset_a5: float = 0.0, offset_a6: float = 0.0,
-        lower_a1: float = 0.0, upper_a1: float = 0.0, lower_a2: float = 0.0, upper_a2: float = 0.0,
-        lower_a3: float = 0.0, upper_a3: float = 0.0, lower_a4: float = 0.0, upper_a4: float = 0.0,
-        lower_a5: float = 0.0, upper_a5: float = 0.0, lower_a6: float = 0.0, upper_a6: float = 0.0,
+        self,
+        *,
+        d1: float = 0.0,
+        a1: float = 0.0,
+        a2: float,
+        a3: float = 0.0,
+        d4: float,
+        j6_offset_x: float = 0.0,
+        d6: float = 0.0,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        offset_a3: float = 0.0,
+        offset_a4: float = 0.0,
+        offset_a5: float = 0.0,
+        offset_a6: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        lower_a3: float = 0.0,
+        upper_a3: float = 0.0,
+        lower_a4: float = 0.0,
+        upper_a4: float = 0.0,
+        lower_a5: float = 0.0,
+        upper_a5: float = 0.0,
+        lower_a6: float = 0.0,
+        upper_a6: float = 0.0,
         check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
@@ -332,207 +230,56 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         upper_a6: A6: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            d1, a1, a2, a3, d4, j6_offset_x, d6, offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,
-            lower_a1, upper_a1, lower_a2, upper_a2, lower_a3, upper_a3, lower_a4, upper_a4, lower_a5, upper_a5,
-            lower_a6, upper_a6, check_limits,
-        )
-        self._constants = self._setup(*values)
-
-    def _setup(
-        self, d1: float, a1: float, a2: float, a3: float, d4: float, j6_offset_x: float, d6: float,
-        offset_a1: float, offset_a2: float, offset_a3: float, offset_a4: float, offset_a5: float,
-        offset_a6: float, lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float, lower_a3: float,
-        upper_a3: float, lower_a4: float, upper_a4: float, lower_a5: float, upper_a5: float, lower_a6: float,
-        upper_a6: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (d1 >= -1e9 and d1 <= 1e9):
-            raise self._refusal("d1: Height of axis A2 above the base", d1=d1)
-        if not (a1 >= 0.0 and a1 <= 1e9):
-            raise self._refusal("a1: Axis A1 to axis A2, forward", a1=a1)
-        if not (a2 <= 1e9 and a2 > 0.0):
-            raise self._refusal("a2: Upper arm, axis A2 to axis A3", a2=a2)
-        if not (a3 >= -1e9 and a3 <= 1e9):
-            raise self._refusal("a3: Axis A3 to the axis of the forearm, up", a3=a3)
-        if not (d4 <= 1e9 and d4 > 0.0):
-            raise self._refusal("d4: Forearm, to the wrist centre", d4=d4)
-        if not (j6_offset_x >= -1e9 and j6_offset_x <= 1e9):
-            raise self._refusal("j6_offset_x: Wrist centre to axis A6, along X", j6_offset_x=j6_offset_x)
-        if not (d6 >= -1e9 and d6 <= 1e9):
-            raise self._refusal("d6: Wrist centre to the flange, along axis A6", d6=d6)
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (offset_a3 >= -1e9 and offset_a3 <= 1e9):
-            raise self._refusal("offset_a3: A3: axis value at the kinematic zero position", offset_a3=offset_a3)
-        if not (offset_a4 >= -1e9 and offset_a4 <= 1e9):
-            raise self._refusal("offset_a4: A4: axis value at the kinematic zero position", offset_a4=offset_a4)
-        if not (offset_a5 >= -1e9 and offset_a5 <= 1e9):
-            raise self._refusal("offset_a5: A5: axis value at the kinematic zero position", offset_a5=offset_a5)
-        if not (offset_a6 >= -1e9 and offset_a6 <= 1e9):
-            raise self._refusal("offset_a6: A6: axis value at the kinematic zero position", offset_a6=offset_a6)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (lower_a3 >= -1e9 and lower_a3 <= 1e9):
-            raise self._refusal("lower_a3: A3: lower limit of the axis, both 0: no limit", lower_a3=lower_a3)
-        if not (upper_a3 >= -1e9 and upper_a3 <= 1e9):
-            raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
-        if not (lower_a4 >= -1e9 and lower_a4 <= 1e9):
-            raise self._refusal("lower_a4: A4: lower limit of the axis, both 0: no limit", lower_a4=lower_a4)
-        if not (upper_a4 >= -1e9 and upper_a4 <= 1e9):
-            raise self._refusal("upper_a4: A4: upper limit of the axis, both 0: no limit", upper_a4=upper_a4)
-        if not (lower_a5 >= -1e9 and lower_a5 <= 1e9):
-            raise self._refusal("lower_a5: A5: lower limit of the axis, both 0: no limit", lower_a5=lower_a5)
-        if not (upper_a5 >= -1e9 and upper_a5 <= 1e9):
-            raise self._refusal("upper_a5: A5: upper limit of the axis, both 0: no limit", upper_a5=upper_a5)
-        if not (lower_a6 >= -1e9 and lower_a6 <= 1e9):
-            raise self._refusal("lower_a6: A6: lower limit of the axis, both 0: no limit", lower_a6=lower_a6)
-        if not (upper_a6 >= -1e9 and upper_a6 <= 1e9):
-            raise self._refusal("upper_a6: A6: upper limit of the axis, both 0: no limit", upper_a6=upper_a6)
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # at most one turn is inside the limits
-        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-        mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # at most one turn is inside the limits
-        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-        mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
-        if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
-            raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
-        effective_lower_a3 = lower_a3
-        effective_upper_a3 = upper_a3
-        tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # at most one turn is inside the limits
-        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-        mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
-        if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
-            raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: whether it has no limits
-        effective_lower_a4 = lower_a4
-        effective_upper_a4 = upper_a4
-        tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
-        lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
-        highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
-        # at most one turn is inside the limits
-        single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
-        mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
-        if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
-            raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
-        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: whether it has no limits
-        effective_lower_a5 = lower_a5
-        effective_upper_a5 = upper_a5
-        tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
-        lowest_a5 = -1e12 if unlimited_a5 else effective_lower_a5 - tolerance_a5
-        highest_a5 = 1e12 if unlimited_a5 else effective_upper_a5 + tolerance_a5
-        # at most one turn is inside the limits
-        single_a5 = (not unlimited_a5) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
-        mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
-        if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
-            raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
-        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: whether it has no limits
-        effective_lower_a6 = lower_a6
-        effective_upper_a6 = upper_a6
-        tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
-        lowest_a6 = -1e12 if unlimited_a6 else effective_lower_a6 - tolerance_a6
-        highest_a6 = 1e12 if unlimited_a6 else effective_upper_a6 + tolerance_a6
-        # at most one turn is inside the limits
-        single_a6 = (not unlimited_a6) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
-        mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
-        machine_scale = a1 + a2 + d4  # characteristic length of the machine
-        effective_q3_tried = sqrt(a3*a3 + d4*d4)  # effective length of the arm that q3 turns
-        searched = abs(j6_offset_x) > 0.0  # whether to scan A6 for a root
-        machine_scale_times_free_angle = 1e-11*machine_scale
-        a2_plus_effective_q3_tried = a2 + effective_q3_tried
-        a2_minus_effective_q3_tried = a2 - effective_q3_tried
-        d4_by_effective_q3_tried = d4/effective_q3_tried
-        a3_by_effective_q3_tried = a3/effective_q3_tried
-        size_of_j6_offset_x = abs(j6_offset_x)
-        part_of_fits = 0.5*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
-        one_by_machine_scale = 1.0/machine_scale
-        return Constants(
-            d1=d1, a1=a1, a2=a2, a3=a3, d4=d4, j6_offset_x=j6_offset_x, d6=d6, offset_a1=offset_a1,
-            offset_a2=offset_a2, offset_a3=offset_a3, offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6,
-            check_limits=check_limits, lower_a1=effective_lower_a1, upper_a1=effective_upper_a1,
-            unlimited_a1=unlimited_a1, lowest_a1=lowest_a1, highest_a1=highest_a1, single_a1=single_a1, mid_a1=mid_a1,
-            lower_a2=effective_lower_a2, upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2,
-            highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3,
-            upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
-            single_a3=single_a3, mid_a3=mid_a3, lower_a4=effective_lower_a4, upper_a4=effective_upper_a4,
-            unlimited_a4=unlimited_a4, lowest_a4=lowest_a4, highest_a4=highest_a4, single_a4=single_a4, mid_a4=mid_a4,
-            lower_a5=effective_lower_a5, upper_a5=effective_upper_a5, unlimited_a5=unlimited_a5, lowest_a5=lowest_a5,
-            highest_a5=highest_a5, single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6,
-            upper_a6=effective_upper_a6, unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6,
-            single_a6=single_a6, mid_a6=mid_a6, machine_scale=machine_scale, effective_q3_tried=effective_q3_tried,
-            searched=searched, machine_scale_times_free_angle=machine_scale_times_free_angle,
-            a2_plus_effective_q3_tried=a2_plus_effective_q3_tried,
-            a2_minus_effective_q3_tried=a2_minus_effective_q3_tried,
-            d4_by_effective_q3_tried=d4_by_effective_q3_tried, a3_by_effective_q3_tried=a3_by_effective_q3_tried,
-            size_of_j6_offset_x=size_of_j6_offset_x, part_of_fits=part_of_fits,
-            one_by_machine_scale=one_by_machine_scale,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
 
     def _try_joint(self, given: Values) -> Values | Status:
         """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
         (
-            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_elbow, wanted_shoulder,
+            free_a1,
+            free_a2,
+            freed,
+            freed_angle,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            side,
+            tried,
+            wanted_elbow,
+            wanted_shoulder,
         ) = given
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a2_minus_effective_q3_tried = k.a2_minus_effective_q3_tried
-        a2_plus_effective_q3_tried = k.a2_plus_effective_q3_tried
-        a3 = k.a3
-        a3_by_effective_q3_tried = k.a3_by_effective_q3_tried
-        d1 = k.d1
-        d4 = k.d4
-        d4_by_effective_q3_tried = k.d4_by_effective_q3_tried
-        d6 = k.d6
-        j6_offset_x = k.j6_offset_x
+        a1, a2, a2_minus_effective_q3_tried = k.a1, k.a2, k.a2_minus_effective_q3_tried
+        a2_plus_effective_q3_tried, a3 = k.a2_plus_effective_q3_tried, k.a3
+        a3_by_effective_q3_tried, d1, d4 = k.a3_by_effective_q3_tried, k.d1, k.d4
+        d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the point in which the last axes intersect
-        wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*j6_offset_x - d6*goal_r13
-        wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*j6_offset_x - d6*goal_r23
+        wrist_x_tried = goal_x + (goal_r12 * sin_q6_tried - goal_r11 * cos_q6_tried) * j6_offset_x - d6 * goal_r13
+        wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
         # distance of the point from the axis of q1
-        distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
-        slope_wrist_x_tried = j6_offset_x*(goal_r12*cos_q6_tried + goal_r11*sin_q6_tried)
-        slope_wrist_y_tried = j6_offset_x*(goal_r22*cos_q6_tried + goal_r21*sin_q6_tried)
+        distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
+        slope_wrist_x_tried = j6_offset_x * (goal_r12 * cos_q6_tried + goal_r11 * sin_q6_tried)
+        slope_wrist_y_tried = j6_offset_x * (goal_r22 * cos_q6_tried + goal_r21 * sin_q6_tried)
         # in the singularity: the angle of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
-            along_q1_tried = wanted_shoulder*wrist_x_tried  # rotation by q1 that points the arm at the point
+            along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
             if distance_q1_tried > machine_scale_times_free_angle:
                 length_q1_tried = distance_q1_tried
                 slope_distance_q1_tried = (
-                    (
-                        slope_wrist_x_tried*wrist_x_tried + slope_wrist_y_tried*wrist_y_tried
-                    )/(distance_q1_tried if distance_q1_tried > 0.0 else 1.0)
+                    (slope_wrist_x_tried * wrist_x_tried + slope_wrist_y_tried * wrist_y_tried)
+                    / (distance_q1_tried if distance_q1_tried > 0.0 else 1.0)
                     if distance_q1_tried > 0.0
                     else 0.0
                 )
@@ -540,14 +287,18 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else:
                 length_q1_tried = 1.0
                 slope_length_q1_tried = 0.0
-            one_by_distance_q1_tried = 1.0/length_q1_tried
-            cos_q1_tried = along_q1_tried*one_by_distance_q1_tried
-            across_q1_tried = wanted_shoulder*wrist_y_tried
-            sin_q1_tried = across_q1_tried*one_by_distance_q1_tried
-            slope_along_q1_tried = wanted_shoulder*slope_wrist_x_tried
-            slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)*one_by_distance_q1_tried
-            slope_across_q1_tried = wanted_shoulder*slope_wrist_y_tried
-            slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)*one_by_distance_q1_tried
+            one_by_distance_q1_tried = 1.0 / length_q1_tried
+            cos_q1_tried = along_q1_tried * one_by_distance_q1_tried
+            across_q1_tried = wanted_shoulder * wrist_y_tried
+            sin_q1_tried = across_q1_tried * one_by_distance_q1_tried
+            slope_along_q1_tried = wanted_shoulder * slope_wrist_x_tried
+            slope_cos_q1_tried = (
+                slope_along_q1_tried - slope_length_q1_tried * cos_q1_tried
+            ) * one_by_distance_q1_tried
+            slope_across_q1_tried = wanted_shoulder * slope_wrist_y_tried
+            slope_sin_q1_tried = (
+                slope_across_q1_tried - slope_length_q1_tried * sin_q1_tried
+            ) * one_by_distance_q1_tried
         else:
             chosen_q1 = freed_angle if freed == 0 else free_a1  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
@@ -555,39 +306,42 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             slope_cos_q1_tried = 0.0
             slope_sin_q1_tried = 0.0
         # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
-        wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*j6_offset_x - d6*goal_r33
+        wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - a1
+        wrist_z_tried = goal_z + (goal_r32 * sin_q6_tried - goal_r31 * cos_q6_tried) * j6_offset_x - d6 * goal_r33
         wrist_z_from_q1_tried = wrist_z_tried - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
+        reach_tried = sqrt(
+            wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
+        )
         part_of_one_less_cos_q3_tried = a2_plus_effective_q3_tried - reach_tried
         part_of_one_less_cos_q3_tried_2 = a2_plus_effective_q3_tried + reach_tried
         # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3_tried = part_of_one_less_cos_q3_tried*part_of_one_less_cos_q3_tried_2
+        one_less_cos_q3_tried = part_of_one_less_cos_q3_tried * part_of_one_less_cos_q3_tried_2
         part_of_one_plus_cos_q3_tried = a2_minus_effective_q3_tried - reach_tried
         part_of_one_plus_cos_q3_tried_2 = a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried*part_of_one_plus_cos_q3_tried_2
+        one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried * part_of_one_plus_cos_q3_tried_2
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        slope_wrist_z_tried = j6_offset_x*(goal_r32*cos_q6_tried + goal_r31*sin_q6_tried)
+        slope_wrist_z_tried = j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
-            slope_wrist_x_tried*cos_q1_tried + slope_wrist_y_tried*sin_q1_tried + slope_cos_q1_tried*wrist_x_tried
-            + slope_sin_q1_tried*wrist_y_tried
+            slope_wrist_x_tried * cos_q1_tried
+            + slope_wrist_y_tried * sin_q1_tried
+            + slope_cos_q1_tried * wrist_x_tried
+            + slope_sin_q1_tried * wrist_y_tried
         )
         slope_reach_tried = (
-            (
-                slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried + slope_wrist_z_tried*wrist_z_from_q1_tried
-            )/(reach_tried if reach_tried > 0.0 else 1.0)
+            (slope_wrist_x_from_q1_tried * wrist_x_from_q1_tried + slope_wrist_z_tried * wrist_z_from_q1_tried)
+            / (reach_tried if reach_tried > 0.0 else 1.0)
             if reach_tried > 0.0
             else 0.0
         )
         slope_one_less_cos_q3_tried = (
-            (part_of_one_less_cos_q3_tried - part_of_one_less_cos_q3_tried_2)*slope_reach_tried
-        )
+            part_of_one_less_cos_q3_tried - part_of_one_less_cos_q3_tried_2
+        ) * slope_reach_tried
         slope_one_plus_cos_q3_tried = (
-            (part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried)*slope_reach_tried
-        )
+            part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried
+        ) * slope_reach_tried
         if sum_of_cos_q3_tried > 0.0:
             divisor_of_cos_q3_tried = sum_of_cos_q3_tried
             slope_sum_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
@@ -595,65 +349,67 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         else:
             divisor_of_cos_q3_tried = 1.0
             slope_divisor_of_cos_q3_tried = 0.0
-        one_by_sum_of_cos_q3_tried = 1.0/divisor_of_cos_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_of_cos_q3_tried
-        sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
-        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
-        root_of_sin_swing_q3_tried = (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
-        sin_swing_q3_tried = 2.0*one_by_sum_of_cos_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
+        one_by_sum_of_cos_q3_tried = 1.0 / divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_of_cos_q3_tried
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        # sine squared, times the squared scale
+        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
+        root_of_sin_swing_q3_tried = sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0
+        sin_swing_q3_tried = 2.0 * one_by_sum_of_cos_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
-        sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
+        cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
+        sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
-            (
-                slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
-                - slope_divisor_of_cos_q3_tried*cos_swing_q3_tried
-            )
-            *one_by_sum_of_cos_q3_tried
-        )
+            slope_one_plus_cos_q3_tried
+            - slope_one_less_cos_q3_tried
+            - slope_divisor_of_cos_q3_tried * cos_swing_q3_tried
+        ) * one_by_sum_of_cos_q3_tried
         slope_sine_square_q3_tried = (
-            one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
+            one_less_cos_q3_tried * slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried * slope_one_less_cos_q3_tried
         )
         slope_root_of_sin_swing_q3_tried = (
-            0.5*slope_sine_square_q3_tried/(root_of_sin_swing_q3_tried if root_of_sin_swing_q3_tried > 0.0 else 1.0)
+            0.5 * slope_sine_square_q3_tried / (root_of_sin_swing_q3_tried if root_of_sin_swing_q3_tried > 0.0 else 1.0)
             if root_of_sin_swing_q3_tried > 0.0
             else 0.0
         )
         slope_sin_swing_q3_tried = (
-            (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_divisor_of_cos_q3_tried*sin_swing_q3_tried)
-            *one_by_sum_of_cos_q3_tried
-        )
+            2.0 * sign_elbow_tried * slope_root_of_sin_swing_q3_tried
+            - slope_divisor_of_cos_q3_tried * sin_swing_q3_tried
+        ) * one_by_sum_of_cos_q3_tried
         slope_cos_q3_tried = (
-            a3_by_effective_q3_tried*slope_cos_swing_q3_tried + d4_by_effective_q3_tried*slope_sin_swing_q3_tried
+            a3_by_effective_q3_tried * slope_cos_swing_q3_tried + d4_by_effective_q3_tried * slope_sin_swing_q3_tried
         )
         slope_sin_q3_tried = (
-            a3_by_effective_q3_tried*slope_sin_swing_q3_tried - d4_by_effective_q3_tried*slope_cos_swing_q3_tried
+            a3_by_effective_q3_tried * slope_sin_swing_q3_tried - d4_by_effective_q3_tried * slope_cos_swing_q3_tried
         )
         # in the singularity: the angle of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
-            arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
-            arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
+            arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
+            arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
             # rotation by q2 that takes the arm to the point that it must reach
-            along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
-            across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
-            part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
-            slope_arm_along_q2_tried = a3*slope_sin_q3_tried + d4*slope_cos_q3_tried
-            slope_arm_across_q2_tried = a3*slope_cos_q3_tried - d4*slope_sin_q3_tried
+            along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
+            across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
+            part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
+            slope_arm_along_q2_tried = a3 * slope_sin_q3_tried + d4 * slope_cos_q3_tried
+            slope_arm_across_q2_tried = a3 * slope_cos_q3_tried - d4 * slope_sin_q3_tried
             slope_along_q2_tried = (
-                arm_across_q2_tried*slope_wrist_z_tried + arm_along_q2_tried*slope_wrist_x_from_q1_tried
-                + slope_arm_across_q2_tried*wrist_z_from_q1_tried + slope_arm_along_q2_tried*wrist_x_from_q1_tried
+                arm_across_q2_tried * slope_wrist_z_tried
+                + arm_along_q2_tried * slope_wrist_x_from_q1_tried
+                + slope_arm_across_q2_tried * wrist_z_from_q1_tried
+                + slope_arm_along_q2_tried * wrist_x_from_q1_tried
             )
             slope_across_q2_tried = (
-                arm_across_q2_tried*slope_wrist_x_from_q1_tried + slope_arm_across_q2_tried*wrist_x_from_q1_tried
-                - arm_along_q2_tried*slope_wrist_z_tried - slope_arm_along_q2_tried*wrist_z_from_q1_tried
+                arm_across_q2_tried * slope_wrist_x_from_q1_tried
+                + slope_arm_across_q2_tried * wrist_x_from_q1_tried
+                - arm_along_q2_tried * slope_wrist_z_tried
+                - slope_arm_along_q2_tried * wrist_z_from_q1_tried
             )
             if part_of_length_q2_tried > 0.0 and reach_tried > machine_scale_times_free_angle:
-                root_of_length_q2_tried = (sqrt(part_of_length_q2_tried) if part_of_length_q2_tried > 0.0 else 0.0)
+                root_of_length_q2_tried = sqrt(part_of_length_q2_tried) if part_of_length_q2_tried > 0.0 else 0.0
                 length_q2_tried = root_of_length_q2_tried
                 slope_root_of_length_q2_tried = (
-                    (
-                        across_q2_tried*slope_across_q2_tried + along_q2_tried*slope_along_q2_tried
-                    )/(root_of_length_q2_tried if root_of_length_q2_tried > 0.0 else 1.0)
+                    (across_q2_tried * slope_across_q2_tried + along_q2_tried * slope_along_q2_tried)
+                    / (root_of_length_q2_tried if root_of_length_q2_tried > 0.0 else 1.0)
                     if root_of_length_q2_tried > 0.0
                     else 0.0
                 )
@@ -661,158 +417,184 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else:
                 length_q2_tried = 1.0
                 slope_length_q2_tried = 0.0
-            one_by_root_of_length_q2_tried = 1.0/length_q2_tried
-            cos_q2_tried = along_q2_tried*one_by_root_of_length_q2_tried
-            sin_q2_tried = across_q2_tried*one_by_root_of_length_q2_tried
+            one_by_root_of_length_q2_tried = 1.0 / length_q2_tried
+            cos_q2_tried = along_q2_tried * one_by_root_of_length_q2_tried
+            sin_q2_tried = across_q2_tried * one_by_root_of_length_q2_tried
             slope_cos_q2_tried = (
-                (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)*one_by_root_of_length_q2_tried
-            )
+                slope_along_q2_tried - slope_length_q2_tried * cos_q2_tried
+            ) * one_by_root_of_length_q2_tried
             slope_sin_q2_tried = (
-                (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)*one_by_root_of_length_q2_tried
-            )
+                slope_across_q2_tried - slope_length_q2_tried * sin_q2_tried
+            ) * one_by_root_of_length_q2_tried
         else:
             chosen_q2 = freed_angle if freed == 1 else free_a2  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
             slope_cos_q2_tried = 0.0
             slope_sin_q2_tried = 0.0
-        r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried
-        sin_q23_tried = cos_q2_tried*sin_q3_tried + cos_q3_tried*sin_q2_tried
-        cos_q23_tried = cos_q2_tried*cos_q3_tried - sin_q2_tried*sin_q3_tried
-        r11_from_q123_tried = r11_from_q1_tried*cos_q23_tried - goal_r31*sin_q23_tried
-        r12_from_q1_tried = goal_r12*cos_q1_tried + goal_r22*sin_q1_tried
-        r12_from_q123_tried = r12_from_q1_tried*cos_q23_tried - goal_r32*sin_q23_tried
-        r12_from_q123_before_q6_tried = r12_from_q123_tried*cos_q6_tried + r11_from_q123_tried*sin_q6_tried
-        slope_r11_from_q1_tried = goal_r11*slope_cos_q1_tried + goal_r21*slope_sin_q1_tried
+        r11_from_q1_tried = goal_r11 * cos_q1_tried + goal_r21 * sin_q1_tried
+        sin_q23_tried = cos_q2_tried * sin_q3_tried + cos_q3_tried * sin_q2_tried
+        cos_q23_tried = cos_q2_tried * cos_q3_tried - sin_q2_tried * sin_q3_tried
+        r11_from_q123_tried = r11_from_q1_tried * cos_q23_tried - goal_r31 * sin_q23_tried
+        r12_from_q1_tried = goal_r12 * cos_q1_tried + goal_r22 * sin_q1_tried
+        r12_from_q123_tried = r12_from_q1_tried * cos_q23_tried - goal_r32 * sin_q23_tried
+        r12_from_q123_before_q6_tried = r12_from_q123_tried * cos_q6_tried + r11_from_q123_tried * sin_q6_tried
+        slope_r11_from_q1_tried = goal_r11 * slope_cos_q1_tried + goal_r21 * slope_sin_q1_tried
         slope_sin_q23_tried = (
-            slope_sin_q3_tried*cos_q2_tried + slope_sin_q2_tried*cos_q3_tried + slope_cos_q3_tried*sin_q2_tried
-            + slope_cos_q2_tried*sin_q3_tried
+            slope_sin_q3_tried * cos_q2_tried
+            + slope_sin_q2_tried * cos_q3_tried
+            + slope_cos_q3_tried * sin_q2_tried
+            + slope_cos_q2_tried * sin_q3_tried
         )
         slope_cos_q23_tried = (
-            slope_cos_q3_tried*cos_q2_tried + slope_cos_q2_tried*cos_q3_tried - slope_sin_q3_tried*sin_q2_tried
-            - slope_sin_q2_tried*sin_q3_tried
+            slope_cos_q3_tried * cos_q2_tried
+            + slope_cos_q2_tried * cos_q3_tried
+            - slope_sin_q3_tried * sin_q2_tried
+            - slope_sin_q2_tried * sin_q3_tried
         )
         slope_r11_from_q123_tried = (
-            slope_r11_from_q1_tried*cos_q23_tried + r11_from_q1_tried*slope_cos_q23_tried
-            - goal_r31*slope_sin_q23_tried
+            slope_r11_from_q1_tried * cos_q23_tried
+            + r11_from_q1_tried * slope_cos_q23_tried
+            - goal_r31 * slope_sin_q23_tried
         )
-        slope_r12_from_q1_tried = goal_r12*slope_cos_q1_tried + goal_r22*slope_sin_q1_tried
+        slope_r12_from_q1_tried = goal_r12 * slope_cos_q1_tried + goal_r22 * slope_sin_q1_tried
         slope_r12_from_q123_tried = (
-            slope_r12_from_q1_tried*cos_q23_tried + r12_from_q1_tried*slope_cos_q23_tried
-            - goal_r32*slope_sin_q23_tried
+            slope_r12_from_q1_tried * cos_q23_tried
+            + r12_from_q1_tried * slope_cos_q23_tried
+            - goal_r32 * slope_sin_q23_tried
         )
-        slope_r12_from_q123_before_q6_tried = (
-            (r11_from_q123_tried + slope_r12_from_q123_tried)*cos_q6_tried
-            + (slope_r11_from_q123_tried - r12_from_q123_tried)*sin_q6_tried
-        )
-        guard = 1.000000000001 - cos_swing_q3_tried*cos_swing_q3_tried
-        slope_guard = -2.0*slope_cos_swing_q3_tried*cos_swing_q3_tried
+        slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried) * cos_q6_tried + (
+            slope_r11_from_q123_tried - r12_from_q123_tried
+        ) * sin_q6_tried
+        guard = 1.000000000001 - cos_swing_q3_tried * cos_swing_q3_tried
+        slope_guard = -2.0 * slope_cos_swing_q3_tried * cos_swing_q3_tried
         return (
-            -r12_from_q123_before_q6_tried, -slope_r12_from_q123_before_q6_tried, guard, slope_guard, cos_q1_tried,
-            sin_q1_tried, cos_q2_tried, sin_q2_tried,
+            -r12_from_q123_before_q6_tried,
+            -slope_r12_from_q123_before_q6_tried,
+            guard,
+            slope_guard,
+            cos_q1_tried,
+            sin_q1_tried,
+            cos_q2_tried,
+            sin_q2_tried,
         )
 
     def _finish_root(self, given: Values) -> Values | Status:
         """The joints at a root, improved by Newton's method, and whether they are on the branch."""
         (
-            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_crossing, wanted_elbow,
-            wanted_shoulder, wanted_wrist,
+            free_a1,
+            free_a2,
+            freed,
+            freed_angle,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            side,
+            tried,
+            wanted_crossing,
+            wanted_elbow,
+            wanted_shoulder,
+            wanted_wrist,
         ) = given
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a2_minus_effective_q3_tried = k.a2_minus_effective_q3_tried
-        a2_plus_effective_q3_tried = k.a2_plus_effective_q3_tried
-        a3 = k.a3
-        a3_by_effective_q3_tried = k.a3_by_effective_q3_tried
-        d1 = k.d1
-        d4 = k.d4
-        d4_by_effective_q3_tried = k.d4_by_effective_q3_tried
-        d6 = k.d6
-        j6_offset_x = k.j6_offset_x
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        one_by_machine_scale = k.one_by_machine_scale
-        part_of_fits = k.part_of_fits
-        size_of_j6_offset_x = k.size_of_j6_offset_x
+        a1, a2, a2_minus_effective_q3_tried = k.a1, k.a2, k.a2_minus_effective_q3_tried
+        a2_plus_effective_q3_tried, a3 = k.a2_plus_effective_q3_tried, k.a3
+        a3_by_effective_q3_tried, d1, d4 = k.a3_by_effective_q3_tried, k.d1, k.d4
+        d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
+        machine_scale_times_free_angle, one_by_machine_scale = k.machine_scale_times_free_angle, k.one_by_machine_scale
+        part_of_fits, size_of_j6_offset_x = k.part_of_fits, k.size_of_j6_offset_x
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the point in which the last axes intersect
-        wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*j6_offset_x - d6*goal_r13
-        wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*j6_offset_x - d6*goal_r23
+        wrist_x_tried = goal_x + (goal_r12 * sin_q6_tried - goal_r11 * cos_q6_tried) * j6_offset_x - d6 * goal_r13
+        wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
         # distance of the point from the axis of q1
-        distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
+        distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
         # in the singularity: the angle of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
-            along_q1_tried = wanted_shoulder*wrist_x_tried  # rotation by q1 that points the arm at the point
+            along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
             length_q1_tried = distance_q1_tried if distance_q1_tried > machine_scale_times_free_angle else 1.0
-            cos_q1_tried = along_q1_tried/length_q1_tried
-            across_q1_tried = wanted_shoulder*wrist_y_tried
-            sin_q1_tried = across_q1_tried/length_q1_tried
+            cos_q1_tried = along_q1_tried / length_q1_tried
+            across_q1_tried = wanted_shoulder * wrist_y_tried
+            sin_q1_tried = across_q1_tried / length_q1_tried
         else:
             chosen_q1 = freed_angle if freed == 0 else free_a1  # q1 where the pose leaves it free
             cos_q1_tried = cos(chosen_q1)
             sin_q1_tried = sin(chosen_q1)
         # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
-        wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*j6_offset_x - d6*goal_r33
+        wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - a1
+        wrist_z_tried = goal_z + (goal_r32 * sin_q6_tried - goal_r31 * cos_q6_tried) * j6_offset_x - d6 * goal_r33
         wrist_z_from_q1_tried = wrist_z_tried - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
+        reach_tried = sqrt(
+            wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
+        )
         # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3_tried = (a2_plus_effective_q3_tried + reach_tried)*(a2_plus_effective_q3_tried - reach_tried)
+        one_less_cos_q3_tried = (a2_plus_effective_q3_tried + reach_tried) * (a2_plus_effective_q3_tried - reach_tried)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = (
-            (reach_tried - a2_minus_effective_q3_tried)*(a2_minus_effective_q3_tried + reach_tried)
+        one_plus_cos_q3_tried = (reach_tried - a2_minus_effective_q3_tried) * (
+            a2_minus_effective_q3_tried + reach_tried
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         divisor_of_cos_q3_tried = sum_of_cos_q3_tried if sum_of_cos_q3_tried > 0.0 else 1.0
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
-        sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
-        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        # sine squared, times the squared scale
+        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         sin_swing_q3_tried = (
-            2.0*(sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)*sign_elbow_tried
-            /divisor_of_cos_q3_tried
+            2.0
+            * (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
+            * sign_elbow_tried
+            / divisor_of_cos_q3_tried
         )
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_q3_tried = a3_by_effective_q3_tried*cos_swing_q3_tried + d4_by_effective_q3_tried*sin_swing_q3_tried
-        sin_q3_tried = a3_by_effective_q3_tried*sin_swing_q3_tried - d4_by_effective_q3_tried*cos_swing_q3_tried
+        cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
+        sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
         # in the singularity: the angle of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
-            arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
-            arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
+            arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
+            arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
             # rotation by q2 that takes the arm to the point that it must reach
-            along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
-            across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
-            part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
+            along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
+            across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
+            part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
             length_q2_tried = (
                 (sqrt(part_of_length_q2_tried) if part_of_length_q2_tried > 0.0 else 0.0)
                 if (part_of_length_q2_tried > 0.0) and (reach_tried > machine_scale_times_free_angle)
                 else 1.0
             )
-            cos_q2_tried = along_q2_tried/length_q2_tried
-            sin_q2_tried = across_q2_tried/length_q2_tried
+            cos_q2_tried = along_q2_tried / length_q2_tried
+            sin_q2_tried = across_q2_tried / length_q2_tried
         else:
             chosen_q2 = freed_angle if freed == 1 else free_a2  # q2 where the pose leaves it free
             cos_q2_tried = cos(chosen_q2)
             sin_q2_tried = sin(chosen_q2)
-        r21_from_q1_tried = goal_r21*cos_q1_tried - goal_r11*sin_q1_tried
-        r22_from_q1_tried = goal_r22*cos_q1_tried - goal_r12*sin_q1_tried
-        r22_from_q123_before_q6_tried = r22_from_q1_tried*cos_q6_tried + r21_from_q1_tried*sin_q6_tried
-        r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried
-        sin_q23_tried = cos_q2_tried*sin_q3_tried + cos_q3_tried*sin_q2_tried
-        cos_q23_tried = cos_q2_tried*cos_q3_tried - sin_q2_tried*sin_q3_tried
-        r31_from_q123_tried = goal_r31*cos_q23_tried + r11_from_q1_tried*sin_q23_tried
-        r12_from_q1_tried = goal_r12*cos_q1_tried + goal_r22*sin_q1_tried
-        r32_from_q123_tried = goal_r32*cos_q23_tried + r12_from_q1_tried*sin_q23_tried
-        r32_from_q123_before_q6_tried = r32_from_q123_tried*cos_q6_tried + r31_from_q123_tried*sin_q6_tried
-        r13_from_q1_tried = goal_r13*cos_q1_tried + goal_r23*sin_q1_tried
-        r13_from_q123_tried = r13_from_q1_tried*cos_q23_tried - goal_r33*sin_q23_tried
-        r23_from_q1_tried = goal_r23*cos_q1_tried - goal_r13*sin_q1_tried
-        r33_from_q123_tried = goal_r33*cos_q23_tried + r13_from_q1_tried*sin_q23_tried
+        r21_from_q1_tried = goal_r21 * cos_q1_tried - goal_r11 * sin_q1_tried
+        r22_from_q1_tried = goal_r22 * cos_q1_tried - goal_r12 * sin_q1_tried
+        r22_from_q123_before_q6_tried = r22_from_q1_tried * cos_q6_tried + r21_from_q1_tried * sin_q6_tried
+        r11_from_q1_tried = goal_r11 * cos_q1_tried + goal_r21 * sin_q1_tried
+        sin_q23_tried = cos_q2_tried * sin_q3_tried + cos_q3_tried * sin_q2_tried
+        cos_q23_tried = cos_q2_tried * cos_q3_tried - sin_q2_tried * sin_q3_tried
+        r31_from_q123_tried = goal_r31 * cos_q23_tried + r11_from_q1_tried * sin_q23_tried
+        r12_from_q1_tried = goal_r12 * cos_q1_tried + goal_r22 * sin_q1_tried
+        r32_from_q123_tried = goal_r32 * cos_q23_tried + r12_from_q1_tried * sin_q23_tried
+        r32_from_q123_before_q6_tried = r32_from_q123_tried * cos_q6_tried + r31_from_q123_tried * sin_q6_tried
+        r13_from_q1_tried = goal_r13 * cos_q1_tried + goal_r23 * sin_q1_tried
+        r13_from_q123_tried = r13_from_q1_tried * cos_q23_tried - goal_r33 * sin_q23_tried
+        r23_from_q1_tried = goal_r23 * cos_q1_tried - goal_r13 * sin_q1_tried
+        r33_from_q123_tried = goal_r33 * cos_q23_tried + r13_from_q1_tried * sin_q23_tried
         r33_from_q1234_tried = (
-            r22_from_q123_before_q6_tried*r33_from_q123_tried - r23_from_q1_tried*r32_from_q123_before_q6_tried
+            r22_from_q123_before_q6_tried * r33_from_q123_tried - r23_from_q1_tried * r32_from_q123_before_q6_tried
         )
         # Newton's method on the closure
         q1, q2, q3, q4, q5, q6, passes = (
@@ -828,148 +610,201 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_q1 = cos(q1)
             q2_plus_q3 = q2 + q3
             cos_q23 = cos(q2_plus_q3)
-            r11_at_q23 = cos_q1*cos_q23
+            r11_at_q23 = cos_q1 * cos_q23
             sin_q1 = sin(q1)
             sin_q23 = sin(q2_plus_q3)
-            r13_at_q23 = cos_q1*sin_q23
+            r13_at_q23 = cos_q1 * sin_q23
             sin_q4 = sin(q4)
             cos_q4 = cos(q4)
-            r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4
+            r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
             sin_q5 = sin(q5)
             cos_q5 = cos(q5)
-            r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5
-            x_at_q2 = a1*cos_q1
+            r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+            x_at_q2 = a1 * cos_q1
             sin_q2 = sin(q2)
-            r13_at_q2 = cos_q1*sin_q2
-            x_at_q3 = x_at_q2 + a2*r13_at_q2
-            x_at_q4 = x_at_q3 + a3*r13_at_q23 + d4*r11_at_q23
-            r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
-            x_at_q6 = x_at_q4 + j6_offset_x*r11_at_q5
-            x = x_at_q6 + d6*r13_at_q5
-            error_1 = (goal_x - x)*one_by_machine_scale
-            r21_at_q23 = cos_q23*sin_q1
-            r23_at_q23 = sin_q1*sin_q23
-            r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4
-            r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5
-            y_at_q2 = a1*sin_q1
-            r23_at_q2 = sin_q1*sin_q2
-            y_at_q3 = y_at_q2 + a2*r23_at_q2
-            y_at_q4 = y_at_q3 + a3*r23_at_q23 + d4*r21_at_q23
-            r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
-            y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
-            y = y_at_q6 + d6*r23_at_q5
-            error_2 = (goal_y - y)*one_by_machine_scale
-            r33_at_q4 = cos_q23*cos_q4
-            r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
+            r13_at_q2 = cos_q1 * sin_q2
+            x_at_q3 = x_at_q2 + a2 * r13_at_q2
+            x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d4 * r11_at_q23
+            r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+            x_at_q6 = x_at_q4 + j6_offset_x * r11_at_q5
+            x = x_at_q6 + d6 * r13_at_q5
+            error_1 = (goal_x - x) * one_by_machine_scale
+            r21_at_q23 = cos_q23 * sin_q1
+            r23_at_q23 = sin_q1 * sin_q23
+            r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+            r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+            y_at_q2 = a1 * sin_q1
+            r23_at_q2 = sin_q1 * sin_q2
+            y_at_q3 = y_at_q2 + a2 * r23_at_q2
+            y_at_q4 = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23
+            r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+            y_at_q6 = y_at_q4 + j6_offset_x * r21_at_q5
+            y = y_at_q6 + d6 * r23_at_q5
+            error_2 = (goal_y - y) * one_by_machine_scale
+            r33_at_q4 = cos_q23 * cos_q4
+            r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
             cos_q2 = cos(q2)
-            z_at_q3 = d1 + a2*cos_q2
-            z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
-            r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
-            z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
-            z = z_at_q6 + d6*r33_at_q5
-            error_3 = (goal_z - z)*one_by_machine_scale
-            r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
+            z_at_q3 = d1 + a2 * cos_q2
+            z_at_q4 = z_at_q3 + a3 * cos_q23 - d4 * sin_q23
+            r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+            z_at_q6 = z_at_q4 + j6_offset_x * r31_at_q5
+            z = z_at_q6 + d6 * r33_at_q5
+            error_3 = (goal_z - z) * one_by_machine_scale
+            r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
             sin_q6 = sin(q6)
             cos_q6 = cos(q6)
-            r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
-            r32_at_q4 = cos_q23*sin_q4
-            r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
-            r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
-            r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-            error_4 = (
-                0.5
-                *(
-                    goal_r31*r21_at_q6 + goal_r32*r22_at_q6 + goal_r33*r23_at_q5 - goal_r21*r31_at_q6 - goal_r22*r32_at_q6
-                    - goal_r23*r33_at_q5
-                )
+            r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
+            r32_at_q4 = cos_q23 * sin_q4
+            r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
+            r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
+            r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
+            error_4 = 0.5 * (
+                goal_r31 * r21_at_q6
+                + goal_r32 * r22_at_q6
+                + goal_r33 * r23_at_q5
+                - goal_r21 * r31_at_q6
+                - goal_r22 * r32_at_q6
+                - goal_r23 * r33_at_q5
             )
-            r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
-            r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
-            r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
-            error_5 = (
-                0.5
-                *(
-                    goal_r11*r31_at_q6 + goal_r12*r32_at_q6 + goal_r13*r33_at_q5 - goal_r31*r11_at_q6 - goal_r32*r12_at_q6
-                    - goal_r33*r13_at_q5
-                )
+            r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+            r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
+            r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
+            error_5 = 0.5 * (
+                goal_r11 * r31_at_q6
+                + goal_r12 * r32_at_q6
+                + goal_r13 * r33_at_q5
+                - goal_r31 * r11_at_q6
+                - goal_r32 * r12_at_q6
+                - goal_r33 * r13_at_q5
             )
-            error_6 = (
-                0.5
-                *(
-                    goal_r21*r11_at_q6 + goal_r22*r12_at_q6 + goal_r23*r13_at_q5 - goal_r11*r21_at_q6 - goal_r12*r22_at_q6
-                    - goal_r13*r23_at_q5
-                )
+            error_6 = 0.5 * (
+                goal_r21 * r11_at_q6
+                + goal_r22 * r12_at_q6
+                + goal_r23 * r13_at_q5
+                - goal_r11 * r21_at_q6
+                - goal_r12 * r22_at_q6
+                - goal_r13 * r23_at_q5
             )
             # pose error, in characteristic lengths and radians
             error = sqrt(
-                error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4 + error_5*error_5 + error_6*error_6
+                error_1 * error_1
+                + error_2 * error_2
+                + error_3 * error_3
+                + error_4 * error_4
+                + error_5 * error_5
+                + error_6 * error_6
             )
-            rate_1_1 = -one_by_machine_scale*y
-            rate_2_1 = one_by_machine_scale*x
+            rate_1_1 = -one_by_machine_scale * y
+            rate_2_1 = one_by_machine_scale * x
             z_minus_d1 = z - d1
-            cos_q1_times_one_by_machine_scale = one_by_machine_scale*cos_q1
-            rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale
+            cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+            rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
             z_minus_z_at_q3 = z - z_at_q3
-            rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale
+            rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
             z_minus_z_at_q4 = z - z_at_q4
             y_minus_y_at_q4 = y - y_at_q4
-            rate_1_4 = one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23)
-            rate_1_5 = one_by_machine_scale*(r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4)
+            rate_1_4 = one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
+            rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4)
             z_minus_z_at_q6 = z - z_at_q6
             y_minus_y_at_q6 = y - y_at_q6
-            rate_1_6 = one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6)
+            rate_1_6 = one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
             product_1_1 = (
-                1e-12 + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4 + rate_1_5*rate_1_5
-                + rate_1_6*rate_1_6
+                1e-12
+                + rate_1_1 * rate_1_1
+                + rate_1_2 * rate_1_2
+                + rate_1_3 * rate_1_3
+                + rate_1_4 * rate_1_4
+                + rate_1_5 * rate_1_5
+                + rate_1_6 * rate_1_6
             )
-            sin_q1_times_one_by_machine_scale = one_by_machine_scale*sin_q1
-            rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale
-            rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale
+            sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
+            rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+            rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
             x_minus_x_at_q4 = x - x_at_q4
-            rate_2_4 = (-r11_at_q23*z_minus_z_at_q4 - x_minus_x_at_q4*sin_q23)*one_by_machine_scale
-            rate_2_5 = (r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4)*one_by_machine_scale
+            rate_2_4 = (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * one_by_machine_scale
+            rate_2_5 = (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * one_by_machine_scale
             x_minus_x_at_q6 = x - x_at_q6
-            rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*one_by_machine_scale
+            rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
             product_1_2 = (
-                rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4 + rate_1_5*rate_2_5
-                + rate_1_6*rate_2_6
+                rate_1_1 * rate_2_1
+                + rate_1_2 * rate_2_2
+                + rate_1_3 * rate_2_3
+                + rate_1_4 * rate_2_4
+                + rate_1_5 * rate_2_5
+                + rate_1_6 * rate_2_6
             )
-            rate_3_2 = one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1)
-            rate_3_3 = one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1)
-            rate_3_4 = one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4)
-            rate_3_5 = one_by_machine_scale*(r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4)
-            rate_3_6 = one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6)
+            rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+            rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+            rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4)
+            rate_3_6 = one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
             product_1_3 = (
-                rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5 + rate_1_6*rate_3_6
+                rate_1_2 * rate_3_2
+                + rate_1_3 * rate_3_3
+                + rate_1_4 * rate_3_4
+                + rate_1_5 * rate_3_5
+                + rate_1_6 * rate_3_6
             )
             rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
-            product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 - rate_1_2_plus_rate_1_3*sin_q1
-            product_1_5 = rate_1_2_plus_rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6
-            product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23
+            product_1_4 = (
+                r11_at_q23 * rate_1_4 + r12_at_q4 * rate_1_5 + r13_at_q5 * rate_1_6 - rate_1_2_plus_rate_1_3 * sin_q1
+            )
+            product_1_5 = (
+                rate_1_2_plus_rate_1_3 * cos_q1 + r21_at_q23 * rate_1_4 + r22_at_q4 * rate_1_5 + r23_at_q5 * rate_1_6
+            )
+            product_1_6 = rate_1_1 + r32_at_q4 * rate_1_5 + r33_at_q5 * rate_1_6 - rate_1_4 * sin_q23
             product_2_2 = (
-                1e-12 + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4 + rate_2_5*rate_2_5
-                + rate_2_6*rate_2_6
+                1e-12
+                + rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
+                + rate_2_6 * rate_2_6
             )
             product_2_3 = (
-                rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5 + rate_2_6*rate_3_6
+                rate_2_2 * rate_3_2
+                + rate_2_3 * rate_3_3
+                + rate_2_4 * rate_3_4
+                + rate_2_5 * rate_3_5
+                + rate_2_6 * rate_3_6
             )
             rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
-            product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 - rate_2_2_plus_rate_2_3*sin_q1
-            product_2_5 = rate_2_2_plus_rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6
-            product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23
+            product_2_4 = (
+                r11_at_q23 * rate_2_4 + r12_at_q4 * rate_2_5 + r13_at_q5 * rate_2_6 - rate_2_2_plus_rate_2_3 * sin_q1
+            )
+            product_2_5 = (
+                rate_2_2_plus_rate_2_3 * cos_q1 + r21_at_q23 * rate_2_4 + r22_at_q4 * rate_2_5 + r23_at_q5 * rate_2_6
+            )
+            product_2_6 = rate_2_1 + r32_at_q4 * rate_2_5 + r33_at_q5 * rate_2_6 - rate_2_4 * sin_q23
             product_3_3 = (
-                1e-12 + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5 + rate_3_6*rate_3_6
+                1e-12
+                + rate_3_2 * rate_3_2
+                + rate_3_3 * rate_3_3
+                + rate_3_4 * rate_3_4
+                + rate_3_5 * rate_3_5
+                + rate_3_6 * rate_3_6
             )
             rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
-            product_3_4 = r11_at_q23*rate_3_4 + r12_at_q4*rate_3_5 + r13_at_q5*rate_3_6 - rate_3_2_plus_rate_3_3*sin_q1
-            product_3_5 = rate_3_2_plus_rate_3_3*cos_q1 + r21_at_q23*rate_3_4 + r22_at_q4*rate_3_5 + r23_at_q5*rate_3_6
-            product_3_6 = r32_at_q4*rate_3_5 + r33_at_q5*rate_3_6 - rate_3_4*sin_q23
-            product_4_4 = 1e-12 + r11_at_q23*r11_at_q23 + r12_at_q4*r12_at_q4 + r13_at_q5*r13_at_q5 + 2.0*sin_q1*sin_q1
-            product_4_5 = r11_at_q23*r21_at_q23 + r12_at_q4*r22_at_q4 + r13_at_q5*r23_at_q5 - 2.0*cos_q1*sin_q1
-            product_4_6 = r12_at_q4*r32_at_q4 + r13_at_q5*r33_at_q5 - r11_at_q23*sin_q23
-            product_5_5 = 1e-12 + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4 + r23_at_q5*r23_at_q5
-            product_5_6 = r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5 - r21_at_q23*sin_q23
-            product_6_6 = 1.000000000001 + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23
+            product_3_4 = (
+                r11_at_q23 * rate_3_4 + r12_at_q4 * rate_3_5 + r13_at_q5 * rate_3_6 - rate_3_2_plus_rate_3_3 * sin_q1
+            )
+            product_3_5 = (
+                rate_3_2_plus_rate_3_3 * cos_q1 + r21_at_q23 * rate_3_4 + r22_at_q4 * rate_3_5 + r23_at_q5 * rate_3_6
+            )
+            product_3_6 = r32_at_q4 * rate_3_5 + r33_at_q5 * rate_3_6 - rate_3_4 * sin_q23
+            product_4_4 = (
+                1e-12 + r11_at_q23 * r11_at_q23 + r12_at_q4 * r12_at_q4 + r13_at_q5 * r13_at_q5 + 2.0 * sin_q1 * sin_q1
+            )
+            product_4_5 = (
+                r11_at_q23 * r21_at_q23 + r12_at_q4 * r22_at_q4 + r13_at_q5 * r23_at_q5 - 2.0 * cos_q1 * sin_q1
+            )
+            product_4_6 = r12_at_q4 * r32_at_q4 + r13_at_q5 * r33_at_q5 - r11_at_q23 * sin_q23
+            product_5_5 = (
+                1e-12 + 2.0 * cos_q1 * cos_q1 + r21_at_q23 * r21_at_q23 + r22_at_q4 * r22_at_q4 + r23_at_q5 * r23_at_q5
+            )
+            product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
+            product_6_6 = 1.000000000001 + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
             # damped least squares: the shortest step that cancels the error
             _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
                 (
@@ -982,24 +817,41 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 ),
                 ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
             )
-            step_q1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1
-            part_of_step_q2 = multiplier_5*cos_q1 - multiplier_4*sin_q1
-            step_q2 = part_of_step_q2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2
-            step_q3 = part_of_step_q2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3
+            step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            part_of_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
+            step_q2 = part_of_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_q3 = part_of_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_q4 = (
-                multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4 + multiplier_4*r11_at_q23
-                + multiplier_5*r21_at_q23 - multiplier_6*sin_q23
+                multiplier_1 * rate_1_4
+                + multiplier_2 * rate_2_4
+                + multiplier_3 * rate_3_4
+                + multiplier_4 * r11_at_q23
+                + multiplier_5 * r21_at_q23
+                - multiplier_6 * sin_q23
             )
             step_q5 = (
-                multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5 + multiplier_4*r12_at_q4
-                + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4
+                multiplier_1 * rate_1_5
+                + multiplier_2 * rate_2_5
+                + multiplier_3 * rate_3_5
+                + multiplier_4 * r12_at_q4
+                + multiplier_5 * r22_at_q4
+                + multiplier_6 * r32_at_q4
             )
             step_q6 = (
-                multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6 + multiplier_4*r13_at_q5
-                + multiplier_5*r23_at_q5 + multiplier_6*r33_at_q5
+                multiplier_1 * rate_1_6
+                + multiplier_2 * rate_2_6
+                + multiplier_3 * rate_3_6
+                + multiplier_4 * r13_at_q5
+                + multiplier_5 * r23_at_q5
+                + multiplier_6 * r33_at_q5
             )
             size = (
-                step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4 + step_q5*step_q5 + step_q6*step_q6
+                step_q1 * step_q1
+                + step_q2 * step_q2
+                + step_q3 * step_q3
+                + step_q4 * step_q4
+                + step_q5 * step_q5
+                + step_q6 * step_q6
             )
             taken = size <= error  # whether the error becomes smaller
             if (not taken) or (error <= 1e-14) or (passes >= 3):
@@ -1026,18 +878,36 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             (),
         )
         fits = (
-            (error <= 1e-10) and ((sin_q4 if size_of_j6_offset_x > 0.0 else cos_q5)*wanted_wrist >= -1e-6)
-            and (-(wanted_crossing*wanted_elbow*wanted_shoulder)*determinant*part_of_fits >= -1e-6)
-            and (wanted_elbow*(a3*sin(q3) + cos(q3)*d4)*one_by_machine_scale >= -1e-6)
-            and (wanted_shoulder*(a1 + a2*sin_q2 + a3*sin_q23 + d4*cos_q23)*one_by_machine_scale >= -1e-6)
+            (error <= 1e-10)
+            and ((sin_q4 if size_of_j6_offset_x > 0.0 else cos_q5) * wanted_wrist >= -1e-6)
+            and (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * part_of_fits >= -1e-6)
+            and (wanted_elbow * (a3 * sin(q3) + cos(q3) * d4) * one_by_machine_scale >= -1e-6)
+            and (wanted_shoulder * (a1 + a2 * sin_q2 + a3 * sin_q23 + d4 * cos_q23) * one_by_machine_scale >= -1e-6)
         )
         return (fits, q1, q2, q3, q4, q5, q6)
 
     def _find_root(self, given: Values) -> Values | Status:
         """The joints at the root that is nearest to the start; zeros where the machine needs no scan."""
         (
-            free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
-            goal_r33, goal_x, goal_y, goal_z, looked_for, start, wanted_crossing, wanted_elbow, wanted_shoulder,
+            free_a1,
+            free_a2,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            looked_for,
+            start,
+            wanted_crossing,
+            wanted_elbow,
+            wanted_shoulder,
             wanted_wrist,
         ) = given
         # root scan along A6
@@ -1047,13 +917,50 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             start,
             looked_for,
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_elbow, wanted_shoulder,
+                free_a1,
+                free_a2,
+                "freed",
+                "freed_angle",
+                goal_r11,
+                goal_r12,
+                goal_r13,
+                goal_r21,
+                goal_r22,
+                goal_r23,
+                goal_r31,
+                goal_r32,
+                goal_r33,
+                goal_x,
+                goal_y,
+                goal_z,
+                "side",
+                "tried",
+                wanted_elbow,
+                wanted_shoulder,
             ),
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_crossing, wanted_elbow,
-                wanted_shoulder, wanted_wrist,
+                free_a1,
+                free_a2,
+                "freed",
+                "freed_angle",
+                goal_r11,
+                goal_r12,
+                goal_r13,
+                goal_r21,
+                goal_r22,
+                goal_r23,
+                goal_r31,
+                goal_r32,
+                goal_r33,
+                goal_x,
+                goal_y,
+                goal_z,
+                "side",
+                "tried",
+                wanted_crossing,
+                wanted_elbow,
+                wanted_shoulder,
+                wanted_wrist,
             ),
             7,
             self._array_programs().try_joint,
@@ -1062,7 +969,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         return (found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6)
 
     def _search_given(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Values | Status:
         """What the search is given."""
         x, y, z = position
@@ -1070,25 +977,35 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sigma_shoulder, sigma_elbow, sigma_wrist, sigma_crossing = signs
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a6 = k.offset_a6
-        searched = k.searched
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
-            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
-            and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
-            and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9 and -1e9 <= x <= 1e9
-            and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9
+        offset_a1, offset_a2, offset_a6, searched = k.offset_a1, k.offset_a2, k.offset_a6, k.searched
+        if not are_usable(
+            r11, r12, r13, r21, r22, r23, r31, r32, r33, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, x, y, z
         ):
             return Status.BAD_INPUT
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        free_a6 = (ref_a6 - offset_a6)*DEGREE
+        free_a1 = (ref_a1 - offset_a1) * DEGREE
+        free_a2 = (ref_a2 - offset_a2) * DEGREE
+        free_a6 = (ref_a6 - offset_a6) * DEGREE
         return (
-            free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, free_a6, sigma_crossing,
-            sigma_elbow, sigma_shoulder, sigma_wrist,
+            free_a1,
+            free_a2,
+            r11,
+            r12,
+            r13,
+            r21,
+            r22,
+            r23,
+            r31,
+            r32,
+            r33,
+            x,
+            y,
+            z,
+            searched,
+            free_a6,
+            sigma_crossing,
+            sigma_elbow,
+            sigma_shoulder,
+            sigma_wrist,
         )
 
     def _from_joints(self, joints: Reals, turns: Turns, reference: Reals) -> Reals | Status:
@@ -1097,52 +1014,38 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        mid_a4 = k.mid_a4
-        mid_a5 = k.mid_a5
-        mid_a6 = k.mid_a6
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        single_a4 = k.single_a4
-        single_a5 = k.single_a5
-        single_a6 = k.single_a6
+        mid_a1, mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a1, k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6, single_a1, single_a2 = k.offset_a5, k.offset_a6, k.single_a1, k.single_a2
+        single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + q1/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + q1 / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + q2/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + q2 / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
-        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + q3/DEGREE  # A3: whole turns added
+        near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
+        axis_a3 = offset_a3 + q3 / DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
-        near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + q4/DEGREE  # A4: whole turns added
+        near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
+        axis_a4 = offset_a4 + q4 / DEGREE  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
-        near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + q5/DEGREE  # A5: whole turns added
+        near_a5 = 360.0 * (turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
+        axis_a5 = offset_a5 + q5 / DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
-        near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + q6/DEGREE  # A6: whole turns added
+        near_a6 = 360.0 * (turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
+        axis_a6 = offset_a6 + q6 / DEGREE  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -1151,81 +1054,63 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a3 = k.a3
-        a3_by_effective_q3_tried = k.a3_by_effective_q3_tried
-        d1 = k.d1
-        d4 = k.d4
-        d4_by_effective_q3_tried = k.d4_by_effective_q3_tried
-        d6 = k.d6
-        j6_offset_x = k.j6_offset_x
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        one_by_machine_scale = k.one_by_machine_scale
-        part_of_fits = k.part_of_fits
-        searched = k.searched
-        size_of_j6_offset_x = k.size_of_j6_offset_x
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
-        ):
+        a1, a2, a3, a3_by_effective_q3_tried, d1, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3_tried, k.d1, k.d4
+        d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6, one_by_machine_scale = k.offset_a5, k.offset_a6, k.one_by_machine_scale
+        part_of_fits, searched, size_of_j6_offset_x = k.part_of_fits, k.searched, k.size_of_j6_offset_x
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         cos_q1 = cos(q1)
-        q2 = DEGREE*(axis_a2 - offset_a2)
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        q2 = DEGREE * (axis_a2 - offset_a2)
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         cos_q23 = cos(q2_plus_q3)
-        r11_at_q23 = cos_q1*cos_q23
+        r11_at_q23 = cos_q1 * cos_q23
         sin_q1 = sin(q1)
         sin_q23 = sin(q2_plus_q3)
-        r13_at_q23 = cos_q1*sin_q23
-        q4 = DEGREE*(axis_a4 - offset_a4)
+        r13_at_q23 = cos_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4
-        q5 = DEGREE*(axis_a5 - offset_a5)
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
-        r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5
-        x_at_q2 = a1*cos_q1
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        x_at_q2 = a1 * cos_q1
         sin_q2 = sin(q2)
-        r13_at_q2 = cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r13_at_q2
-        x_at_q4 = x_at_q3 + a3*r13_at_q23 + d4*r11_at_q23
-        r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
-        x_at_q6 = x_at_q4 + j6_offset_x*r11_at_q5
-        d6_times_r13_at_q5 = d6*r13_at_q5
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q4 + j6_offset_x * r11_at_q5
+        d6_times_r13_at_q5 = d6 * r13_at_q5
         x = d6_times_r13_at_q5 + x_at_q6
-        r21_at_q23 = cos_q23*sin_q1
-        r23_at_q23 = sin_q1*sin_q23
-        r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4
-        r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5
-        y_at_q2 = a1*sin_q1
-        r23_at_q2 = sin_q1*sin_q2
-        y_at_q3 = y_at_q2 + a2*r23_at_q2
-        y_at_q4 = y_at_q3 + a3*r23_at_q23 + d4*r21_at_q23
-        r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
-        y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
-        d6_times_r23_at_q5 = d6*r23_at_q5
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        y_at_q2 = a1 * sin_q1
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q4 + j6_offset_x * r21_at_q5
+        d6_times_r23_at_q5 = d6 * r23_at_q5
         y = d6_times_r23_at_q5 + y_at_q6
-        r33_at_q4 = cos_q23*cos_q4
-        r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
-        r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
-        r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
-        r32_at_q4 = cos_q23*sin_q4
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
         cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
-        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
-        z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
-        z = z_at_q6 + d6*r33_at_q5
+        z_at_q3 = d1 + a2 * cos_q2
+        z_at_q4 = z_at_q3 + a3 * cos_q23 - d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q4 + j6_offset_x * r31_at_q5
+        z = z_at_q6 + d6 * r33_at_q5
         z_minus_d1 = z - d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
@@ -1234,34 +1119,34 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         y_minus_y_at_q6 = y - y_at_q6
         x_minus_x_at_q4 = x - x_at_q4
         x_minus_x_at_q6 = x - x_at_q6
-        cos_q1_times_one_by_machine_scale = one_by_machine_scale*cos_q1
-        sin_q1_times_one_by_machine_scale = one_by_machine_scale*sin_q1
+        cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
         # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
                 (
-                    -one_by_machine_scale*y,
-                    z_minus_d1*cos_q1_times_one_by_machine_scale,
-                    z_minus_z_at_q3*cos_q1_times_one_by_machine_scale,
-                    one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23),
-                    one_by_machine_scale*(r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4),
-                    one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6),
+                    -one_by_machine_scale * y,
+                    z_minus_d1 * cos_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale,
+                    one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23),
+                    one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4),
+                    one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6),
                 ),
                 (
-                    one_by_machine_scale*x,
-                    z_minus_d1*sin_q1_times_one_by_machine_scale,
-                    z_minus_z_at_q3*sin_q1_times_one_by_machine_scale,
-                    (-r11_at_q23*z_minus_z_at_q4 - x_minus_x_at_q4*sin_q23)*one_by_machine_scale,
-                    (r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4)*one_by_machine_scale,
-                    (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*one_by_machine_scale,
+                    one_by_machine_scale * x,
+                    z_minus_d1 * sin_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
+                    (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * one_by_machine_scale,
+                    (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * one_by_machine_scale,
+                    (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale,
                 ),
                 (
                     0.0,
-                    one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1),
-                    one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1),
-                    one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4),
-                    one_by_machine_scale*(r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4),
-                    one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6),
+                    one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1),
+                    one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1),
+                    one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4),
+                    one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4),
+                    one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6),
                 ),
                 (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
                 (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
@@ -1269,33 +1154,35 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             ),
             (),
         )
-        q6 = DEGREE*(axis_a6 - offset_a6)
+        q6 = DEGREE * (axis_a6 - offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
-        r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
-        r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
-        r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
-        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
-        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
+        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
+        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
+        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
+        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
+        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
+        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
         wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the point in which the last axes intersect
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
-        margin_elbow_closed = a3_by_effective_q3_tried*sin_q3_closed + d4_by_effective_q3_tried*cos_q3_closed
+        margin_elbow_closed = a3_by_effective_q3_tried * sin_q3_closed + d4_by_effective_q3_tried * cos_q3_closed
         if searched:
             # wrist centre: the point in which the last axes intersect
-            wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*j6_offset_x
-            wrist_y_tried = wrist_y_closed + (r22_at_q6*sin_q6 - r21_at_q6*cos_q6)*j6_offset_x
-            margin_shoulder_tried = one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)
+            wrist_x_tried = wrist_x_closed + (r12_at_q6 * sin_q6 - r11_at_q6 * cos_q6) * j6_offset_x
+            wrist_y_tried = wrist_y_closed + (r22_at_q6 * sin_q6 - r21_at_q6 * cos_q6) * j6_offset_x
+            margin_shoulder_tried = one_by_machine_scale * (wrist_x_tried * cos_q1 + wrist_y_tried * sin_q1)
             branch_shoulder = margin_shoulder_tried
-            branch_wrist = (sin_q4 if size_of_j6_offset_x > 0.0 else cos_q5)*one_by_machine_scale
+            branch_wrist = (sin_q4 if size_of_j6_offset_x > 0.0 else cos_q5) * one_by_machine_scale
             branch_crossing = (
-                -(1.0 if margin_elbow_closed >= 0.0 else -1.0)*(1.0 if margin_shoulder_tried >= 0.0 else -1.0)*determinant
-                *part_of_fits
+                -(1.0 if margin_elbow_closed >= 0.0 else -1.0)
+                * (1.0 if margin_shoulder_tried >= 0.0 else -1.0)
+                * determinant
+                * part_of_fits
             )
         else:
-            margin_shoulder_closed = one_by_machine_scale*(wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)
+            margin_shoulder_closed = one_by_machine_scale * (wrist_x_closed * cos_q1 + wrist_y_closed * sin_q1)
             branch_shoulder = margin_shoulder_closed
             branch_wrist = cos_q5
             branch_crossing = 1.0
@@ -1309,65 +1196,53 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
-        ):
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6 = k.offset_a5, k.offset_a6
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
-        q2 = DEGREE*(axis_a2 - offset_a2)
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        q2 = DEGREE * (axis_a2 - offset_a2)
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         sin_q23 = sin(q2_plus_q3)
-        r13_at_q23 = cos_q1*sin_q23
-        q4 = DEGREE*(axis_a4 - offset_a4)
+        r13_at_q23 = cos_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
         cos_q23 = cos(q2_plus_q3)
-        r11_at_q23 = cos_q1*cos_q23
-        r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4
-        q5 = DEGREE*(axis_a5 - offset_a5)
+        r11_at_q23 = cos_q1 * cos_q23
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
-        r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
-        q6 = DEGREE*(axis_a6 - offset_a6)
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        q6 = DEGREE * (axis_a6 - offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
-        r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
-        r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5
-        r23_at_q23 = sin_q1*sin_q23
-        r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
-        r21_at_q23 = cos_q23*sin_q1
-        r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4
-        r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
-        r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
-        r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
-        r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5
-        r32_at_q4 = cos_q23*sin_q4
-        r33_at_q4 = cos_q23*cos_q4
-        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
-        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
-        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
-        return (
-            (r11_at_q6, r12_at_q6, r13_at_q5),
-            (r21_at_q6, r22_at_q6, r23_at_q5),
-            (r31_at_q6, r32_at_q6, r33_at_q5),
-        )
+        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
+        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        r23_at_q23 = sin_q1 * sin_q23
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
+        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        r32_at_q4 = cos_q23 * sin_q4
+        r33_at_q4 = cos_q23 * cos_q4
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
+        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        return ((r11_at_q6, r12_at_q6, r13_at_q5), (r21_at_q6, r22_at_q6, r23_at_q5), (r31_at_q6, r32_at_q6, r33_at_q5))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -1376,88 +1251,85 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a2_minus_effective_q3_tried = k.a2_minus_effective_q3_tried
-        a2_plus_effective_q3_tried = k.a2_plus_effective_q3_tried
-        a3_by_effective_q3_tried = k.a3_by_effective_q3_tried
-        d1 = k.d1
-        d4_by_effective_q3_tried = k.d4_by_effective_q3_tried
-        d6 = k.d6
-        effective_q3_tried = k.effective_q3_tried
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        mid_a4 = k.mid_a4
-        mid_a5 = k.mid_a5
-        mid_a6 = k.mid_a6
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        searched = k.searched
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        single_a4 = k.single_a4
-        single_a5 = k.single_a5
+        a1, a2, a2_minus_effective_q3_tried = k.a1, k.a2, k.a2_minus_effective_q3_tried
+        a2_plus_effective_q3_tried, a3_by_effective_q3_tried = k.a2_plus_effective_q3_tried, k.a3_by_effective_q3_tried
+        d1, d4_by_effective_q3_tried, d6 = k.d1, k.d4_by_effective_q3_tried, k.d6
+        effective_q3_tried, machine_scale_times_free_angle = k.effective_q3_tried, k.machine_scale_times_free_angle
+        mid_a1, mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a1, k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6, searched, single_a1 = k.offset_a5, k.offset_a6, k.searched, k.single_a1
+        single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
         single_a6 = k.single_a6
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
-            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
-            and -1e9 <= ref_a6 <= 1e9
-        ):
+        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x_closed = x - d6*r13  # wrist centre: the point in which the last axes intersect
-        wrist_y_closed = y - d6*r23
+        wrist_x_closed = x - d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_y_closed = y - d6 * r23
         # distance of the point from the axis of q1
-        distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
+        distance_q1_closed = sqrt(wrist_x_closed * wrist_x_closed + wrist_y_closed * wrist_y_closed)
         # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_closed = sigma_shoulder*distance_q1_closed
+        ahead_q1_closed = sigma_shoulder * distance_q1_closed
         wrist_x_from_q1_closed = ahead_q1_closed - a1  # coordinate of the point that the remaining links must reach
-        wrist_z_closed = z - d6*r33
+        wrist_z_closed = z - d6 * r33
         wrist_z_from_q1_closed = wrist_z_closed - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
         reach_closed = sqrt(
-            wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
+            wrist_x_from_q1_closed * wrist_x_from_q1_closed + wrist_z_from_q1_closed * wrist_z_from_q1_closed
         )
         # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3_closed = (
-            (a2_plus_effective_q3_tried + reach_closed)*(a2_plus_effective_q3_tried - reach_closed)
+        one_less_cos_q3_closed = (a2_plus_effective_q3_tried + reach_closed) * (
+            a2_plus_effective_q3_tried - reach_closed
         )
         # 1 + cosine, times the scale
-        one_plus_cos_q3_closed = (
-            (reach_closed - a2_minus_effective_q3_tried)*(a2_minus_effective_q3_tried + reach_closed)
+        one_plus_cos_q3_closed = (reach_closed - a2_minus_effective_q3_tried) * (
+            a2_minus_effective_q3_tried + reach_closed
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
         divisor_of_cos_q3_closed = sum_of_cos_q3_closed if sum_of_cos_q3_closed > 0.0 else 1.0
-        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
         # q3: out of reach
         if not (searched or (-1.0000000000005 <= cos_swing_q3_closed <= 1.0000000000005)):
             missing = (
-                0.5*(
-                    abs(a2_minus_effective_q3_tried - reach_closed) + abs(a2_minus_effective_q3_tried + reach_closed)
-                    + abs(a2_plus_effective_q3_tried - reach_closed) + abs(a2_plus_effective_q3_tried + reach_closed)
+                0.5
+                * (
+                    abs(a2_minus_effective_q3_tried - reach_closed)
+                    + abs(a2_minus_effective_q3_tried + reach_closed)
+                    + abs(a2_plus_effective_q3_tried - reach_closed)
+                    + abs(a2_plus_effective_q3_tried + reach_closed)
                 )
-                - a2_plus_effective_q3_tried - reach_closed
+                - a2_plus_effective_q3_tried
+                - reach_closed
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # without the offset there is no second crossing
         if not (searched or (sigma_crossing > 0)):
             return Diagnosis(Status.UNREACHABLE, "without the offset there is no second crossing", 0.0)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        free_a6 = (ref_a6 - offset_a6)*DEGREE
+        free_a1 = (ref_a1 - offset_a1) * DEGREE
+        free_a2 = (ref_a2 - offset_a2) * DEGREE
+        free_a6 = (ref_a6 - offset_a6) * DEGREE
         # root scan along A6
         found = self._find_root(
             (
-                free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, free_a6,
-                sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist,
+                free_a1,
+                free_a2,
+                r11,
+                r12,
+                r13,
+                r21,
+                r22,
+                r23,
+                r31,
+                r32,
+                r33,
+                x,
+                y,
+                z,
+                searched,
+                free_a6,
+                sigma_crossing,
+                sigma_elbow,
+                sigma_shoulder,
+                sigma_wrist,
             )
         )
         if isinstance(found, Status):
@@ -1476,98 +1348,111 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         else:
             # in the singularity: the angle of the reference
             if distance_q1_closed > machine_scale_times_free_angle:
-                along_q1_closed = sigma_shoulder*wrist_x_closed  # rotation by q1 that points the arm at the point
-                cos_q1_closed = along_q1_closed/distance_q1_closed
-                across_q1_closed = sigma_shoulder*wrist_y_closed
-                sin_q1_closed = across_q1_closed/distance_q1_closed
+                along_q1_closed = sigma_shoulder * wrist_x_closed  # rotation by q1 that points the arm at the point
+                cos_q1_closed = along_q1_closed / distance_q1_closed
+                across_q1_closed = sigma_shoulder * wrist_y_closed
+                sin_q1_closed = across_q1_closed / distance_q1_closed
             else:
                 cos_q1_closed = cos(free_a1)
                 sin_q1_closed = sin(free_a1)
             q1 = arctan2(sin_q1_closed + 0.0, cos_q1_closed + 0.0)
-            sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # sine squared, times the squared scale
+            # sine squared, times the squared scale
+            sine_square_q3_closed = one_less_cos_q3_closed * one_plus_cos_q3_closed
             sin_swing_q3_closed = (
-                2.0*(sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
-                /divisor_of_cos_q3_closed
+                2.0
+                * (sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)
+                * sigma_elbow
+                / divisor_of_cos_q3_closed
             )
             # in the singularity: the angle of the reference
             if reach_closed > machine_scale_times_free_angle:
-                arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed
-                arm_across_q2_closed = a2 + effective_q3_tried*cos_swing_q3_closed
+                arm_along_q2_closed = effective_q3_tried * sin_swing_q3_closed
+                arm_across_q2_closed = a2 + effective_q3_tried * cos_swing_q3_closed
                 # rotation by q2 that takes the arm to the point that it must reach
-                along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
-                across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
-                part_of_length_q2_closed = across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed
+                along_q2_closed = (
+                    arm_across_q2_closed * wrist_z_from_q1_closed + arm_along_q2_closed * wrist_x_from_q1_closed
+                )
+                across_q2_closed = (
+                    arm_across_q2_closed * wrist_x_from_q1_closed - arm_along_q2_closed * wrist_z_from_q1_closed
+                )
+                part_of_length_q2_closed = across_q2_closed * across_q2_closed + along_q2_closed * along_q2_closed
                 length_q2_closed = sqrt(part_of_length_q2_closed) if part_of_length_q2_closed > 0.0 else 1.0
-                cos_q2_closed = along_q2_closed/length_q2_closed
-                sin_q2_closed = across_q2_closed/length_q2_closed
+                cos_q2_closed = along_q2_closed / length_q2_closed
+                sin_q2_closed = across_q2_closed / length_q2_closed
             else:
                 cos_q2_closed = cos(free_a2)
                 sin_q2_closed = sin(free_a2)
             q2 = arctan2(sin_q2_closed + 0.0, cos_q2_closed + 0.0)
             # addition theorem: plus the angle of the direction from which it is measured
-            cos_q3_closed = a3_by_effective_q3_tried*cos_swing_q3_closed + d4_by_effective_q3_tried*sin_swing_q3_closed
-            sin_q3_closed = a3_by_effective_q3_tried*sin_swing_q3_closed - d4_by_effective_q3_tried*cos_swing_q3_closed
+            cos_q3_closed = (
+                a3_by_effective_q3_tried * cos_swing_q3_closed + d4_by_effective_q3_tried * sin_swing_q3_closed
+            )
+            sin_q3_closed = (
+                a3_by_effective_q3_tried * sin_swing_q3_closed - d4_by_effective_q3_tried * cos_swing_q3_closed
+            )
             q3 = arctan2(sin_q3_closed + 0.0, cos_q3_closed + 0.0)
-            r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
-            sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
-            cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
-            r33_from_q123_closed = r33*cos_q23_closed + r13_from_q1_closed*sin_q23_closed
-            r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
+            r13_from_q1_closed = r13 * cos_q1_closed + r23 * sin_q1_closed
+            sin_q23_closed = cos_q2_closed * sin_q3_closed + cos_q3_closed * sin_q2_closed
+            cos_q23_closed = cos_q2_closed * cos_q3_closed - sin_q2_closed * sin_q3_closed
+            r33_from_q123_closed = r33 * cos_q23_closed + r13_from_q1_closed * sin_q23_closed
+            r23_from_q1_closed = r23 * cos_q1_closed - r13 * sin_q1_closed
             # polar coordinates: the radius at angle q4
-            radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
+            radius_q4_closed = sqrt(
+                r23_from_q1_closed * r23_from_q1_closed + r33_from_q123_closed * r33_from_q123_closed
+            )
             # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the reference
             if radius_q4_closed > 1e-11:
-                direction_x_q4_closed = sigma_wrist*r33_from_q123_closed
-                direction_y_q4_closed = -sigma_wrist*r23_from_q1_closed
+                direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
+                direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed
             else:
-                free_a4 = (ref_a4 - offset_a4)*DEGREE
+                free_a4 = (ref_a4 - offset_a4) * DEGREE
                 direction_x_q4_closed = cos(free_a4)
                 direction_y_q4_closed = sin(free_a4)
             q4 = arctan2(direction_y_q4_closed + 0.0, direction_x_q4_closed + 0.0)
-            r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
-            q4_radius_of_q5_closed = sigma_wrist*radius_q4_closed
+            r13_from_q123_closed = r13_from_q1_closed * cos_q23_closed - r33 * sin_q23_closed
+            q4_radius_of_q5_closed = sigma_wrist * radius_q4_closed
             q5 = arctan2(r13_from_q123_closed + 0.0, q4_radius_of_q5_closed + 0.0)
-            r21_from_q1_closed = r21*cos_q1_closed - r11*sin_q1_closed
-            r11_from_q1_closed = r11*cos_q1_closed + r21*sin_q1_closed
-            r31_from_q123_closed = r31*cos_q23_closed + r11_from_q1_closed*sin_q23_closed
+            r21_from_q1_closed = r21 * cos_q1_closed - r11 * sin_q1_closed
+            r11_from_q1_closed = r11 * cos_q1_closed + r21 * sin_q1_closed
+            r31_from_q123_closed = r31 * cos_q23_closed + r11_from_q1_closed * sin_q23_closed
             scaled_r21_from_q1234_closed = (
-                direction_x_q4_closed*r21_from_q1_closed + direction_y_q4_closed*r31_from_q123_closed
+                direction_x_q4_closed * r21_from_q1_closed + direction_y_q4_closed * r31_from_q123_closed
             )
-            r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
-            r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
-            r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
+            r22_from_q1_closed = r22 * cos_q1_closed - r12 * sin_q1_closed
+            r12_from_q1_closed = r12 * cos_q1_closed + r22 * sin_q1_closed
+            r32_from_q123_closed = r32 * cos_q23_closed + r12_from_q1_closed * sin_q23_closed
             scaled_r22_from_q1234_closed = (
-                direction_x_q4_closed*r22_from_q1_closed + direction_y_q4_closed*r32_from_q123_closed
+                direction_x_q4_closed * r22_from_q1_closed + direction_y_q4_closed * r32_from_q123_closed
             )
             q6 = arctan2(scaled_r21_from_q1234_closed + 0.0, scaled_r22_from_q1234_closed + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + q1/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + q1 / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + q2/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + q2 / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
-        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + q3/DEGREE  # A3: whole turns added
+        near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
+        axis_a3 = offset_a3 + q3 / DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
-        near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + q4/DEGREE  # A4: whole turns added
+        near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
+        axis_a4 = offset_a4 + q4 / DEGREE  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
-        near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + q5/DEGREE  # A5: whole turns added
+        near_a5 = 360.0 * (turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
+        axis_a5 = offset_a5 + q5 / DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
-        near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + q6/DEGREE  # A6: whole turns added
+        near_a6 = 360.0 * (turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
+        axis_a6 = offset_a6 + q6 / DEGREE  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -1576,158 +1461,80 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        highest_a4 = k.highest_a4
-        highest_a5 = k.highest_a5
-        highest_a6 = k.highest_a6
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        lowest_a4 = k.lowest_a4
-        lowest_a5 = k.lowest_a5
-        lowest_a6 = k.lowest_a6
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
-        # limits of A3
-        if not (axis_a3 >= lowest_a3):
-            missing = lowest_a3 - axis_a3
-            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
-                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
-        if not (axis_a3 <= highest_a3):
-            missing = axis_a3 - highest_a3
-            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
-                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
-        # limits of A4
-        if not (axis_a4 >= lowest_a4):
-            missing = lowest_a4 - axis_a4
-            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
-                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A4: below its lower limit [deg]", missing)
-        if not (axis_a4 <= highest_a4):
-            missing = axis_a4 - highest_a4
-            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
-                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A4: above its upper limit [deg]", missing)
-        # limits of A5
-        if not (axis_a5 >= lowest_a5):
-            missing = lowest_a5 - axis_a5
-            if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
-                return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A5: below its lower limit [deg]", missing)
-        if not (axis_a5 <= highest_a5):
-            missing = axis_a5 - highest_a5
-            if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
-                return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A5: above its upper limit [deg]", missing)
-        # limits of A6
-        if not (axis_a6 >= lowest_a6):
-            missing = lowest_a6 - axis_a6
-            if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
-                return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A6: below its lower limit [deg]", missing)
-        if not (axis_a6 <= highest_a6):
-            missing = axis_a6 - highest_a6
-            if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
-                return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A6: above its upper limit [deg]", missing)
+        highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+        highest_a5, highest_a6, lowest_a1, lowest_a2 = k.highest_a5, k.highest_a6, k.lowest_a1, k.lowest_a2
+        lowest_a3, lowest_a4, lowest_a5, lowest_a6 = k.lowest_a3, k.lowest_a4, k.lowest_a5, k.lowest_a6
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond_turn("A1", axis_a1, lowest_a1, highest_a1)
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
+        if not lowest_a3 <= axis_a3 <= highest_a3:
+            return beyond_turn("A3", axis_a3, lowest_a3, highest_a3)
+        if not lowest_a4 <= axis_a4 <= highest_a4:
+            return beyond_turn("A4", axis_a4, lowest_a4, highest_a4)
+        if not lowest_a5 <= axis_a5 <= highest_a5:
+            return beyond_turn("A5", axis_a5, lowest_a5, highest_a5)
+        if not lowest_a6 <= axis_a6 <= highest_a6:
+            return beyond_turn("A6", axis_a6, lowest_a6, highest_a6)
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a3 = k.a3
-        d1 = k.d1
-        d4 = k.d4
-        d6 = k.d6
-        j6_offset_x = k.j6_offset_x
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        one_by_machine_scale = k.one_by_machine_scale
-        part_of_fits = k.part_of_fits
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
-        ):
+        a1, a2, a3, d1, d4, d6, j6_offset_x, offset_a1 = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        one_by_machine_scale, part_of_fits = k.one_by_machine_scale, k.part_of_fits
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
-        x_at_q2 = a1*cos_q1
-        y_at_q2 = a1*sin_q1
-        q2 = DEGREE*(axis_a2 - offset_a2)
+        x_at_q2 = a1 * cos_q1
+        y_at_q2 = a1 * sin_q1
+        q2 = DEGREE * (axis_a2 - offset_a2)
         sin_q2 = sin(q2)
-        r13_at_q2 = cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r13_at_q2
-        r23_at_q2 = sin_q1*sin_q2
-        y_at_q3 = y_at_q2 + a2*r23_at_q2
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         sin_q23 = sin(q2_plus_q3)
         cos_q23 = cos(q2_plus_q3)
-        r11_at_q23 = cos_q1*cos_q23
-        r21_at_q23 = cos_q23*sin_q1
-        r13_at_q23 = cos_q1*sin_q23
-        q4 = DEGREE*(axis_a4 - offset_a4)
+        r11_at_q23 = cos_q1 * cos_q23
+        r21_at_q23 = cos_q23 * sin_q1
+        r13_at_q23 = cos_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
-        r23_at_q23 = sin_q1*sin_q23
-        r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
-        r32_at_q4 = cos_q23*sin_q4
-        r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4
-        q5 = DEGREE*(axis_a5 - offset_a5)
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
-        r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5
-        r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4
-        r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5
-        r33_at_q4 = cos_q23*cos_q4
-        r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
-        x_at_q4 = x_at_q3 + a3*r13_at_q23 + d4*r11_at_q23
-        r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
-        x_at_q6 = x_at_q4 + j6_offset_x*r11_at_q5
-        x = x_at_q6 + d6*r13_at_q5
-        y_at_q4 = y_at_q3 + a3*r23_at_q23 + d4*r21_at_q23
-        r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
-        y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
-        y = y_at_q6 + d6*r23_at_q5
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q4 + j6_offset_x * r11_at_q5
+        x = x_at_q6 + d6 * r13_at_q5
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q4 + j6_offset_x * r21_at_q5
+        y = y_at_q6 + d6 * r23_at_q5
         cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
-        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
-        z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
-        z = z_at_q6 + d6*r33_at_q5
+        z_at_q3 = d1 + a2 * cos_q2
+        z_at_q4 = z_at_q3 + a3 * cos_q23 - d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q4 + j6_offset_x * r31_at_q5
+        z = z_at_q6 + d6 * r33_at_q5
         z_minus_d1 = z - d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
@@ -1736,34 +1543,34 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         y_minus_y_at_q6 = y - y_at_q6
         x_minus_x_at_q4 = x - x_at_q4
         x_minus_x_at_q6 = x - x_at_q6
-        cos_q1_times_one_by_machine_scale = one_by_machine_scale*cos_q1
-        sin_q1_times_one_by_machine_scale = one_by_machine_scale*sin_q1
+        cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
         # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
                 (
-                    -one_by_machine_scale*y,
-                    z_minus_d1*cos_q1_times_one_by_machine_scale,
-                    z_minus_z_at_q3*cos_q1_times_one_by_machine_scale,
-                    one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23),
-                    one_by_machine_scale*(r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4),
-                    one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6),
+                    -one_by_machine_scale * y,
+                    z_minus_d1 * cos_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale,
+                    one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23),
+                    one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4),
+                    one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6),
                 ),
                 (
-                    one_by_machine_scale*x,
-                    z_minus_d1*sin_q1_times_one_by_machine_scale,
-                    z_minus_z_at_q3*sin_q1_times_one_by_machine_scale,
-                    (-r11_at_q23*z_minus_z_at_q4 - x_minus_x_at_q4*sin_q23)*one_by_machine_scale,
-                    (r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4)*one_by_machine_scale,
-                    (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*one_by_machine_scale,
+                    one_by_machine_scale * x,
+                    z_minus_d1 * sin_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
+                    (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * one_by_machine_scale,
+                    (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * one_by_machine_scale,
+                    (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale,
                 ),
                 (
                     0.0,
-                    one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1),
-                    one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1),
-                    one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4),
-                    one_by_machine_scale*(r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4),
-                    one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6),
+                    one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1),
+                    one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1),
+                    one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4),
+                    one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4),
+                    one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6),
                 ),
                 (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
                 (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
@@ -1771,79 +1578,65 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             ),
             (),
         )
-        margin_determinant = determinant*part_of_fits
+        margin_determinant = determinant * part_of_fits
         return (margin_determinant,)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a3 = k.a3
-        d1 = k.d1
-        d4 = k.d4
-        d6 = k.d6
-        j6_offset_x = k.j6_offset_x
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
-        ):
+        a1, a2, a3, d1, d4, d6, j6_offset_x, offset_a1 = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
-        q2 = DEGREE*(axis_a2 - offset_a2)
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        q2 = DEGREE * (axis_a2 - offset_a2)
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         cos_q23 = cos(q2_plus_q3)
-        r21_at_q23 = cos_q23*sin_q1
+        r21_at_q23 = cos_q23 * sin_q1
         cos_q1 = cos(q1)
         sin_q23 = sin(q2_plus_q3)
-        r23_at_q23 = sin_q1*sin_q23
-        q4 = DEGREE*(axis_a4 - offset_a4)
+        r23_at_q23 = sin_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4
-        q5 = DEGREE*(axis_a5 - offset_a5)
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
-        r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5
-        y_at_q2 = a1*sin_q1
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        y_at_q2 = a1 * sin_q1
         sin_q2 = sin(q2)
-        r23_at_q2 = sin_q1*sin_q2
-        y_at_q3 = y_at_q2 + a2*r23_at_q2
-        y_at_q4 = y_at_q3 + a3*r23_at_q23 + d4*r21_at_q23
-        r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
-        y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
-        y = y_at_q6 + d6*r23_at_q5
-        r33_at_q4 = cos_q23*cos_q4
-        r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
-        r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
-        r32_at_q4 = cos_q23*sin_q4
-        r11_at_q23 = cos_q1*cos_q23
-        r13_at_q23 = cos_q1*sin_q23
-        r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4
-        r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5
-        x_at_q2 = a1*cos_q1
-        r13_at_q2 = cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r13_at_q2
-        x_at_q4 = x_at_q3 + a3*r13_at_q23 + d4*r11_at_q23
-        r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
-        x_at_q6 = x_at_q4 + j6_offset_x*r11_at_q5
-        x = x_at_q6 + d6*r13_at_q5
-        r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q4 + j6_offset_x * r21_at_q5
+        y = y_at_q6 + d6 * r23_at_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        r11_at_q23 = cos_q1 * cos_q23
+        r13_at_q23 = cos_q1 * sin_q23
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        x_at_q2 = a1 * cos_q1
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q4 + j6_offset_x * r11_at_q5
+        x = x_at_q6 + d6 * r13_at_q5
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
         cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
-        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
-        z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
-        z = z_at_q6 + d6*r33_at_q5
+        z_at_q3 = d1 + a2 * cos_q2
+        z_at_q4 = z_at_q3 + a3 * cos_q23 - d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q4 + j6_offset_x * r31_at_q5
+        z = z_at_q6 + d6 * r33_at_q5
         z_minus_d1 = z - d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
@@ -1854,20 +1647,28 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         x_minus_x_at_q6 = x - x_at_q6
         return (
             (
-                -y, z_minus_d1*cos_q1, z_minus_z_at_q3*cos_q1, r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23,
-                r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4,
-                r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6,
+                -y,
+                z_minus_d1 * cos_q1,
+                z_minus_z_at_q3 * cos_q1,
+                r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23,
+                r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4,
+                r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6,
             ),
             (
-                x, z_minus_d1*sin_q1, z_minus_z_at_q3*sin_q1, -r11_at_q23*z_minus_z_at_q4 - x_minus_x_at_q4*sin_q23,
-                r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4,
-                r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6,
+                x,
+                z_minus_d1 * sin_q1,
+                z_minus_z_at_q3 * sin_q1,
+                -r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23,
+                r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4,
+                r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6,
             ),
             (
-                0.0, (x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1, (x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1,
-                r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4,
-                r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4,
-                r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6,
+                0.0,
+                (x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1,
+                (x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1,
+                r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4,
+                r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4,
+                r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6,
             ),
             (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
             (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
@@ -1885,8 +1686,25 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _all_joints(self, given: Values) -> list[Reals]:
         """The joints at every root of a search."""
         (
-            free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
-            goal_r33, goal_x, goal_y, goal_z, looked_for, start, wanted_crossing, wanted_elbow, wanted_shoulder,
+            free_a1,
+            free_a2,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            looked_for,
+            start,
+            wanted_crossing,
+            wanted_elbow,
+            wanted_shoulder,
             wanted_wrist,
         ) = given
         return every_root(
@@ -1895,13 +1713,50 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             start,
             looked_for,
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_elbow, wanted_shoulder,
+                free_a1,
+                free_a2,
+                "freed",
+                "freed_angle",
+                goal_r11,
+                goal_r12,
+                goal_r13,
+                goal_r21,
+                goal_r22,
+                goal_r23,
+                goal_r31,
+                goal_r32,
+                goal_r33,
+                goal_x,
+                goal_y,
+                goal_z,
+                "side",
+                "tried",
+                wanted_elbow,
+                wanted_shoulder,
             ),
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_crossing, wanted_elbow,
-                wanted_shoulder, wanted_wrist,
+                free_a1,
+                free_a2,
+                "freed",
+                "freed_angle",
+                goal_r11,
+                goal_r12,
+                goal_r13,
+                goal_r21,
+                goal_r22,
+                goal_r23,
+                goal_r31,
+                goal_r32,
+                goal_r33,
+                goal_x,
+                goal_y,
+                goal_z,
+                "side",
+                "tried",
+                wanted_crossing,
+                wanted_elbow,
+                wanted_shoulder,
+                wanted_wrist,
             ),
             7,
             self._array_programs().try_joint,

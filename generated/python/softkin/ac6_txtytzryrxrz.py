@@ -35,81 +35,37 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._limits import beyond, beyond_turn
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.ac6_txtytzryrxrz import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    flange_x: float
-    flange_y: float
-    flange_z: float
-    offset_a1: float
-    offset_a2: float
-    offset_a3: float
-    offset_a4: float
-    offset_a5: float
-    offset_a6: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    lower_a3: float
-    upper_a3: float
-    unlimited_a3: bool
-    lowest_a3: float
-    highest_a3: float
-    lower_a4: float
-    upper_a4: float
-    unlimited_a4: bool
-    lowest_a4: float
-    highest_a4: float
-    single_a4: bool
-    mid_a4: float
-    lower_a5: float
-    upper_a5: float
-    unlimited_a5: bool
-    lowest_a5: float
-    highest_a5: float
-    single_a5: bool
-    mid_a5: float
-    lower_a6: float
-    upper_a6: float
-    unlimited_a6: bool
-    lowest_a6: float
-    highest_a6: float
-    single_a6: bool
-    mid_a6: float
-    machine_scale: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        flange_x, flange_y, flange_z, offset_a1 = p["flange_x"], p["flange_y"], p["flange_z"], p["offset_a1"]
+        offset_a2, offset_a3, offset_a4, offset_a5 = p["offset_a2"], p["offset_a3"], p["offset_a4"], p["offset_a5"]
+        offset_a6 = p["offset_a6"]
+        self.lowest_a1, self.highest_a1, *_ = machine._window("a1")
+        self.lowest_a2, self.highest_a2, *_ = machine._window("a2")
+        self.lowest_a3, self.highest_a3, *_ = machine._window("a3")
+        self.lowest_a4, self.highest_a4, self.single_a4, self.mid_a4 = machine._window("a4")
+        self.lowest_a5, self.highest_a5, self.single_a5, self.mid_a5 = machine._window("a5")
+        self.lowest_a6, self.highest_a6, self.single_a6, self.mid_a6 = machine._window("a6")
+        self.flange_x, self.flange_y, self.flange_z, self.offset_a1 = flange_x, flange_y, flange_z, offset_a1
+        self.offset_a2, self.offset_a3, self.offset_a4, self.offset_a5 = offset_a2, offset_a3, offset_a4, offset_a5
+        self.offset_a6 = offset_a6
 
 
 class Ac6TXTYTZRYRXRZ(Mechanism):
@@ -118,7 +74,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_TXTYTZRYRXRZ"
     AXES = (
@@ -130,94 +86,28 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         Axis(name="A6", kind="rotary", unit="deg", meaning="Flange about its Z", multi_turn=True),
     )
     PARAMETERS = (
-        Parameter(
-            name="flange_x", kind="distance", unit="u", meaning="Centre of the head to the flange, along x",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="flange_y", kind="distance", unit="u", meaning="Centre of the head to the flange, along y",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="flange_z", kind="distance", unit="u", meaning="Centre of the head to the flange, along z",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a1", kind="distance", unit="u", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="distance", unit="u", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a3", kind="distance", unit="u", meaning="A3: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a4", kind="angle", unit="deg", meaning="A4: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a5", kind="angle", unit="deg", meaning="A5: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a6", kind="angle", unit="deg", meaning="A6: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="distance", unit="u", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="distance", unit="u", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="distance", unit="u", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="distance", unit="u", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a3", kind="distance", unit="u", meaning="A3: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a3", kind="distance", unit="u", meaning="A3: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a4", kind="angle", unit="deg", meaning="A4: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a4", kind="angle", unit="deg", meaning="A4: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a5", kind="angle", unit="deg", meaning="A5: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a5", kind="angle", unit="deg", meaning="A5: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a6", kind="angle", unit="deg", meaning="A6: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a6", kind="angle", unit="deg", meaning="A6: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("distance", "flange_x", "Centre of the head to the flange, along x"),
+        Parameter.of("distance", "flange_y", "Centre of the head to the flange, along y"),
+        Parameter.of("distance", "flange_z", "Centre of the head to the flange, along z"),
+        Parameter.of("distance", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_a3", "A3: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a4", "A4: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a5", "A5: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a6", "A6: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a4", "A4: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a4", "A4: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a5", "A5: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a5", "A5: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a6", "A6: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a6", "A6: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="wrist", kind="branch", branches=("upright", "flipped"), default=1),
@@ -236,12 +126,30 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     DISTANCE_AXES = (3, 4, 5)
 
     def __init__(
-        self, *, flange_x: float = 0.0, flange_y: float = 0.0, flange_z: float = 0.0, offset_a1: float = 0.0,
-        offset_a2: float = 0.0, offset_a3: float = 0.0, offset_a4: float = 0.0, offset_a5: float = 0.0,
-        offset_a6: float = 0.0, lower_a1: float = 0.0, upper_a1: float = 0.0, lower_a2: float = 0.0,
-        upper_a2: float = 0.0, lower_a3: float = 0.0, upper_a3: float = 0.0, lower_a4: float = 0.0,
-        upper_a4: float = 0.0, lower_a5: float = 0.0, upper_a5: float = 0.0, lower_a6: float = 0.0,
-        upper_a6: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        flange_x: float = 0.0,
+        flange_y: float = 0.0,
+        flange_z: float = 0.0,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        offset_a3: float = 0.0,
+        offset_a4: float = 0.0,
+        offset_a5: float = 0.0,
+        offset_a6: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        lower_a3: float = 0.0,
+        upper_a3: float = 0.0,
+        lower_a4: float = 0.0,
+        upper_a4: float = 0.0,
+        lower_a5: float = 0.0,
+        upper_a5: float = 0.0,
+        lower_a6: float = 0.0,
+        upper_a6: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -268,186 +176,44 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         upper_a6: A6: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            flange_x, flange_y, flange_z, offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6, lower_a1,
-            upper_a1, lower_a2, upper_a2, lower_a3, upper_a3, lower_a4, upper_a4, lower_a5, upper_a5, lower_a6,
-            upper_a6, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, lowest_a5=-1e12, lowest_a6=-1e12,
-                highest_a1=1e12, highest_a2=1e12, highest_a3=1e12, highest_a4=1e12, highest_a5=1e12, highest_a6=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, flange_x: float, flange_y: float, flange_z: float, offset_a1: float, offset_a2: float,
-        offset_a3: float, offset_a4: float, offset_a5: float, offset_a6: float, lower_a1: float, upper_a1: float,
-        lower_a2: float, upper_a2: float, lower_a3: float, upper_a3: float, lower_a4: float, upper_a4: float,
-        lower_a5: float, upper_a5: float, lower_a6: float, upper_a6: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (flange_x >= -1e9 and flange_x <= 1e9):
-            raise self._refusal("flange_x: Centre of the head to the flange, along x", flange_x=flange_x)
-        if not (flange_y >= -1e9 and flange_y <= 1e9):
-            raise self._refusal("flange_y: Centre of the head to the flange, along y", flange_y=flange_y)
-        if not (flange_z >= -1e9 and flange_z <= 1e9):
-            raise self._refusal("flange_z: Centre of the head to the flange, along z", flange_z=flange_z)
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (offset_a3 >= -1e9 and offset_a3 <= 1e9):
-            raise self._refusal("offset_a3: A3: axis value at the kinematic zero position", offset_a3=offset_a3)
-        if not (offset_a4 >= -1e9 and offset_a4 <= 1e9):
-            raise self._refusal("offset_a4: A4: axis value at the kinematic zero position", offset_a4=offset_a4)
-        if not (offset_a5 >= -1e9 and offset_a5 <= 1e9):
-            raise self._refusal("offset_a5: A5: axis value at the kinematic zero position", offset_a5=offset_a5)
-        if not (offset_a6 >= -1e9 and offset_a6 <= 1e9):
-            raise self._refusal("offset_a6: A6: axis value at the kinematic zero position", offset_a6=offset_a6)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (lower_a3 >= -1e9 and lower_a3 <= 1e9):
-            raise self._refusal("lower_a3: A3: lower limit of the axis, both 0: no limit", lower_a3=lower_a3)
-        if not (upper_a3 >= -1e9 and upper_a3 <= 1e9):
-            raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
-        if not (lower_a4 >= -1e9 and lower_a4 <= 1e9):
-            raise self._refusal("lower_a4: A4: lower limit of the axis, both 0: no limit", lower_a4=lower_a4)
-        if not (upper_a4 >= -1e9 and upper_a4 <= 1e9):
-            raise self._refusal("upper_a4: A4: upper limit of the axis, both 0: no limit", upper_a4=upper_a4)
-        if not (lower_a5 >= -1e9 and lower_a5 <= 1e9):
-            raise self._refusal("lower_a5: A5: lower limit of the axis, both 0: no limit", lower_a5=lower_a5)
-        if not (upper_a5 >= -1e9 and upper_a5 <= 1e9):
-            raise self._refusal("upper_a5: A5: upper limit of the axis, both 0: no limit", upper_a5=upper_a5)
-        if not (lower_a6 >= -1e9 and lower_a6 <= 1e9):
-            raise self._refusal("lower_a6: A6: lower limit of the axis, both 0: no limit", lower_a6=lower_a6)
-        if not (upper_a6 >= -1e9 and upper_a6 <= 1e9):
-            raise self._refusal("upper_a6: A6: upper limit of the axis, both 0: no limit", upper_a6=upper_a6)
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
-            raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
-        effective_lower_a3 = lower_a3
-        effective_upper_a3 = upper_a3
-        tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
-            raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        unlimited_a4 = abs(lower_a4) + abs(upper_a4) <= 0.0  # a4: whether it has no limits
-        effective_lower_a4 = lower_a4
-        effective_upper_a4 = upper_a4
-        tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
-        lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
-        highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
-        # at most one turn is inside the limits
-        single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
-        mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
-        if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
-            raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
-        unlimited_a5 = abs(lower_a5) + abs(upper_a5) <= 0.0  # a5: whether it has no limits
-        effective_lower_a5 = lower_a5
-        effective_upper_a5 = upper_a5
-        tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
-        lowest_a5 = -1e12 if unlimited_a5 else effective_lower_a5 - tolerance_a5
-        highest_a5 = 1e12 if unlimited_a5 else effective_upper_a5 + tolerance_a5
-        # at most one turn is inside the limits
-        single_a5 = (not unlimited_a5) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
-        mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
-        if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
-            raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
-        unlimited_a6 = abs(lower_a6) + abs(upper_a6) <= 0.0  # a6: whether it has no limits
-        effective_lower_a6 = lower_a6
-        effective_upper_a6 = upper_a6
-        tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
-        lowest_a6 = -1e12 if unlimited_a6 else effective_lower_a6 - tolerance_a6
-        highest_a6 = 1e12 if unlimited_a6 else effective_upper_a6 + tolerance_a6
-        # at most one turn is inside the limits
-        single_a6 = (not unlimited_a6) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
-        mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
-        machine_scale = 1.0  # characteristic length of the machine
-        return Constants(
-            flange_x=flange_x, flange_y=flange_y, flange_z=flange_z, offset_a1=offset_a1, offset_a2=offset_a2,
-            offset_a3=offset_a3, offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6,
-            check_limits=check_limits, lower_a1=effective_lower_a1, upper_a1=effective_upper_a1,
-            unlimited_a1=unlimited_a1, lowest_a1=lowest_a1, highest_a1=highest_a1, lower_a2=effective_lower_a2,
-            upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2,
-            lower_a3=effective_lower_a3, upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3,
-            highest_a3=highest_a3, lower_a4=effective_lower_a4, upper_a4=effective_upper_a4,
-            unlimited_a4=unlimited_a4, lowest_a4=lowest_a4, highest_a4=highest_a4, single_a4=single_a4, mid_a4=mid_a4,
-            lower_a5=effective_lower_a5, upper_a5=effective_upper_a5, unlimited_a5=unlimited_a5, lowest_a5=lowest_a5,
-            highest_a5=highest_a5, single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6,
-            upper_a6=effective_upper_a6, unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6,
-            single_a6=single_a6, mid_a6=mid_a6, machine_scale=machine_scale,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        flange_x = k.flange_x
-        flange_y = k.flange_y
-        flange_z = k.flange_z
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
+        flange_x, flange_y, flange_z, offset_a1 = k.flange_x, k.flange_y, k.flange_z, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
         offset_a6 = k.offset_a6
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
-        ):
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
-        a5 = DEGREE*(axis_a5 - offset_a5)
+        a5 = DEGREE * (axis_a5 - offset_a5)
         cos_a5 = cos(a5)
-        a4 = DEGREE*(axis_a4 - offset_a4)
+        a4 = DEGREE * (axis_a4 - offset_a4)
         sin_a4 = sin(a4)
-        r13_at_a5 = cos_a5*sin_a4
+        r13_at_a5 = cos_a5 * sin_a4
         sin_a5 = sin(a5)
         cos_a4 = cos(a4)
-        r12_at_a5 = sin_a4*sin_a5
-        a6 = DEGREE*(axis_a6 - offset_a6)
+        r12_at_a5 = sin_a4 * sin_a5
+        a6 = DEGREE * (axis_a6 - offset_a6)
         sin_a6 = sin(a6)
         cos_a6 = cos(a6)
-        r11_at_a6 = cos_a4*cos_a6 + r12_at_a5*sin_a6
-        r12_at_a6 = r12_at_a5*cos_a6 - cos_a4*sin_a6
+        r11_at_a6 = cos_a4 * cos_a6 + r12_at_a5 * sin_a6
+        r12_at_a6 = r12_at_a5 * cos_a6 - cos_a4 * sin_a6
         a1 = axis_a1 - offset_a1
-        x = a1 + flange_x*r11_at_a6 + flange_y*r12_at_a6 + flange_z*r13_at_a5
-        r21_at_a6 = cos_a5*sin_a6
-        r22_at_a6 = cos_a5*cos_a6
+        x = a1 + flange_x * r11_at_a6 + flange_y * r12_at_a6 + flange_z * r13_at_a5
+        r21_at_a6 = cos_a5 * sin_a6
+        r22_at_a6 = cos_a5 * cos_a6
         a2 = axis_a2 - offset_a2
-        y = a2 + flange_x*r21_at_a6 + flange_y*r22_at_a6 - flange_z*sin_a5
-        r33_at_a5 = cos_a4*cos_a5
-        r32_at_a5 = cos_a4*sin_a5
-        r31_at_a6 = r32_at_a5*sin_a6 - cos_a6*sin_a4
-        r32_at_a6 = r32_at_a5*cos_a6 + sin_a4*sin_a6
+        y = a2 + flange_x * r21_at_a6 + flange_y * r22_at_a6 - flange_z * sin_a5
+        r33_at_a5 = cos_a4 * cos_a5
+        r32_at_a5 = cos_a4 * sin_a5
+        r31_at_a6 = r32_at_a5 * sin_a6 - cos_a6 * sin_a4
+        r32_at_a6 = r32_at_a5 * cos_a6 + sin_a4 * sin_a6
         a3 = axis_a3 - offset_a3
-        z = a3 + flange_x*r31_at_a6 + flange_y*r32_at_a6 + flange_z*r33_at_a5
+        z = a3 + flange_x * r31_at_a6 + flange_y * r32_at_a6 + flange_z * r33_at_a5
         return (
             (x, y, z),
             ((r11_at_a6, r12_at_a6, r13_at_a5), (r21_at_a6, r22_at_a6, -sin_a5), (r31_at_a6, r32_at_a6, r33_at_a5)),
@@ -458,38 +224,32 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
-        ):
+        offset_a4, offset_a5, offset_a6 = k.offset_a4, k.offset_a5, k.offset_a6
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
-        a5 = DEGREE*(axis_a5 - offset_a5)
+        a5 = DEGREE * (axis_a5 - offset_a5)
         sin_a5 = sin(a5)
-        a4 = DEGREE*(axis_a4 - offset_a4)
+        a4 = DEGREE * (axis_a4 - offset_a4)
         cos_a4 = cos(a4)
         sin_a4 = sin(a4)
-        r12_at_a5 = sin_a4*sin_a5
-        a6 = DEGREE*(axis_a6 - offset_a6)
+        r12_at_a5 = sin_a4 * sin_a5
+        a6 = DEGREE * (axis_a6 - offset_a6)
         sin_a6 = sin(a6)
         cos_a6 = cos(a6)
-        r11_at_a6 = cos_a4*cos_a6 + r12_at_a5*sin_a6
-        r12_at_a6 = r12_at_a5*cos_a6 - cos_a4*sin_a6
+        r11_at_a6 = cos_a4 * cos_a6 + r12_at_a5 * sin_a6
+        r12_at_a6 = r12_at_a5 * cos_a6 - cos_a4 * sin_a6
         cos_a5 = cos(a5)
-        r13_at_a5 = cos_a5*sin_a4
-        r21_at_a6 = cos_a5*sin_a6
-        r22_at_a6 = cos_a5*cos_a6
-        r32_at_a5 = cos_a4*sin_a5
-        r31_at_a6 = r32_at_a5*sin_a6 - cos_a6*sin_a4
-        r32_at_a6 = r32_at_a5*cos_a6 + sin_a4*sin_a6
-        r33_at_a5 = cos_a4*cos_a5
+        r13_at_a5 = cos_a5 * sin_a4
+        r21_at_a6 = cos_a5 * sin_a6
+        r22_at_a6 = cos_a5 * cos_a6
+        r32_at_a5 = cos_a4 * sin_a5
+        r31_at_a6 = r32_at_a5 * sin_a6 - cos_a6 * sin_a4
+        r32_at_a6 = r32_at_a5 * cos_a6 + sin_a4 * sin_a6
+        r33_at_a5 = cos_a4 * cos_a5
         return ((r11_at_a6, r12_at_a6, r13_at_a5), (r21_at_a6, r22_at_a6, -sin_a5), (r31_at_a6, r32_at_a6, r33_at_a5))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -498,59 +258,44 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         turn_a4, turn_a5, turn_a6 = turns
         _, _, _, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
-        flange_x = k.flange_x
-        flange_y = k.flange_y
-        flange_z = k.flange_z
-        mid_a4 = k.mid_a4
-        mid_a5 = k.mid_a5
-        mid_a6 = k.mid_a6
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
-        offset_a6 = k.offset_a6
-        single_a4 = k.single_a4
-        single_a5 = k.single_a5
-        single_a6 = k.single_a6
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a4 <= 1e9
-            and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9
-        ):
+        flange_x, flange_y, flange_z, mid_a4, mid_a5 = k.flange_x, k.flange_y, k.flange_z, k.mid_a4, k.mid_a5
+        mid_a6, offset_a1, offset_a2, offset_a3 = k.mid_a6, k.offset_a1, k.offset_a2, k.offset_a3
+        offset_a4, offset_a5, offset_a6, single_a4 = k.offset_a4, k.offset_a5, k.offset_a6, k.single_a4
+        single_a5, single_a6 = k.single_a5, k.single_a6
+        if not are_usable(x, y, z, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # wrist centre: the point in which the last axes intersect
-        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
+        wrist_x = x - flange_x * r11 - flange_y * r12 - flange_z * r13
         axis_a1 = offset_a1 + wrist_x
-        wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
+        wrist_y = y - flange_x * r21 - flange_y * r22 - flange_z * r23
         axis_a2 = offset_a2 + wrist_y
-        wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
+        wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         axis_a3 = offset_a3 + wrist_z
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # polar coordinates: the radius at angle a4
+        radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
         # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
         if radius_a4 > 1e-11:
-            direction_x_a4 = sigma_wrist*r33
-            direction_y_a4 = sigma_wrist*r13
+            direction_x_a4 = sigma_wrist * r33
+            direction_y_a4 = sigma_wrist * r13
         else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            free_a4 = (ref_a4 - offset_a4) * DEGREE
             direction_x_a4 = cos(free_a4)
             direction_y_a4 = sin(free_a4)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
-        near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
-        axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4 + 0.0)/DEGREE  # A4: whole turns added
+        near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
+        axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4 + 0.0) / DEGREE  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
-        a4_radius_of_a5 = sigma_wrist*radius_a4
+        a4_radius_of_a5 = sigma_wrist * radius_a4
         open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
-        near_a5 = 360.0*(turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + arctan2(-r23, a4_radius_of_a5 + 0.0)/DEGREE  # A5: whole turns added
+        near_a5 = 360.0 * (turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
+        axis_a5 = offset_a5 + arctan2(-r23, a4_radius_of_a5 + 0.0) / DEGREE  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
-        scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
-        direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
+        scaled_r11_from_a4 = direction_x_a4 * r11 - direction_y_a4 * r31
+        direction_y_a6 = direction_y_a4 * r32 - direction_x_a4 * r12
         open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
-        near_a6 = 360.0*(turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0)/DEGREE  # A6: whole turns added
+        near_a6 = 360.0 * (turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
+        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0) / DEGREE  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -559,72 +304,21 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        highest_a4 = k.highest_a4
-        highest_a5 = k.highest_a5
-        highest_a6 = k.highest_a6
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        lowest_a4 = k.lowest_a4
-        lowest_a5 = k.lowest_a5
-        lowest_a6 = k.lowest_a6
-        # limits of A4
-        if not (axis_a4 >= lowest_a4):
-            missing = lowest_a4 - axis_a4
-            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
-                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A4: below its lower limit [deg]", missing)
-        if not (axis_a4 <= highest_a4):
-            missing = axis_a4 - highest_a4
-            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
-                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A4: above its upper limit [deg]", missing)
-        # limits of A5
-        if not (axis_a5 >= lowest_a5):
-            missing = lowest_a5 - axis_a5
-            if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
-                return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A5: below its lower limit [deg]", missing)
-        if not (axis_a5 <= highest_a5):
-            missing = axis_a5 - highest_a5
-            if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
-                return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A5: above its upper limit [deg]", missing)
-        # limits of A6
-        if not (axis_a6 >= lowest_a6):
-            missing = lowest_a6 - axis_a6
-            if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
-                return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A6: below its lower limit [deg]", missing)
-        if not (axis_a6 <= highest_a6):
-            missing = axis_a6 - highest_a6
-            if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
-                return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A6: above its upper limit [deg]", missing)
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
-        # limits of A3
-        if not (axis_a3 >= lowest_a3):
-            missing = lowest_a3 - axis_a3
-            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [u]", missing)
-        if not (axis_a3 <= highest_a3):
-            missing = axis_a3 - highest_a3
-            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [u]", missing)
+        highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+        highest_a5, highest_a6, lowest_a1, lowest_a2 = k.highest_a5, k.highest_a6, k.lowest_a1, k.lowest_a2
+        lowest_a3, lowest_a4, lowest_a5, lowest_a6 = k.lowest_a3, k.lowest_a4, k.lowest_a5, k.lowest_a6
+        if not lowest_a4 <= axis_a4 <= highest_a4:
+            return beyond_turn("A4", axis_a4, lowest_a4, highest_a4)
+        if not lowest_a5 <= axis_a5 <= highest_a5:
+            return beyond_turn("A5", axis_a5, lowest_a5, highest_a5)
+        if not lowest_a6 <= axis_a6 <= highest_a6:
+            return beyond_turn("A6", axis_a6, lowest_a6, highest_a6)
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond("A1", axis_a1, lowest_a1, highest_a1, "u")
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond("A2", axis_a2, lowest_a2, highest_a2, "u")
+        if not lowest_a3 <= axis_a3 <= highest_a3:
+            return beyond("A3", axis_a3, lowest_a3, highest_a3, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
@@ -632,13 +326,9 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
         offset_a5 = k.offset_a5
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
-        ):
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
-        a5 = DEGREE*(axis_a5 - offset_a5)
+        a5 = DEGREE * (axis_a5 - offset_a5)
         cos_a5 = cos(a5)
         return (cos_a5,)
 
@@ -646,53 +336,50 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        flange_x = k.flange_x
-        flange_y = k.flange_y
-        flange_z = k.flange_z
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        offset_a5 = k.offset_a5
+        flange_x, flange_y, flange_z, offset_a1 = k.flange_x, k.flange_y, k.flange_z, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
         offset_a6 = k.offset_a6
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
-        ):
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
-        a4 = DEGREE*(axis_a4 - offset_a4)
+        a4 = DEGREE * (axis_a4 - offset_a4)
         cos_a4 = cos(a4)
-        a5 = DEGREE*(axis_a5 - offset_a5)
+        a5 = DEGREE * (axis_a5 - offset_a5)
         cos_a5 = cos(a5)
-        r33_at_a5 = cos_a4*cos_a5
+        r33_at_a5 = cos_a4 * cos_a5
         sin_a4 = sin(a4)
         sin_a5 = sin(a5)
-        r13_at_a5 = cos_a5*sin_a4
+        r13_at_a5 = cos_a5 * sin_a4
         a3 = axis_a3 - offset_a3
-        r32_at_a5 = cos_a4*sin_a5
-        a6 = DEGREE*(axis_a6 - offset_a6)
+        r32_at_a5 = cos_a4 * sin_a5
+        a6 = DEGREE * (axis_a6 - offset_a6)
         sin_a6 = sin(a6)
         cos_a6 = cos(a6)
-        r31_at_a6 = r32_at_a5*sin_a6 - cos_a6*sin_a4
-        r32_at_a6 = r32_at_a5*cos_a6 + sin_a4*sin_a6
-        z = a3 + flange_x*r31_at_a6 + flange_y*r32_at_a6 + flange_z*r33_at_a5
+        r31_at_a6 = r32_at_a5 * sin_a6 - cos_a6 * sin_a4
+        r32_at_a6 = r32_at_a5 * cos_a6 + sin_a4 * sin_a6
+        z = a3 + flange_x * r31_at_a6 + flange_y * r32_at_a6 + flange_z * r33_at_a5
         z_minus_a3 = z - a3
         a2 = axis_a2 - offset_a2
-        r21_at_a6 = cos_a5*sin_a6
-        r22_at_a6 = cos_a5*cos_a6
-        y = a2 + flange_x*r21_at_a6 + flange_y*r22_at_a6 - flange_z*sin_a5
+        r21_at_a6 = cos_a5 * sin_a6
+        r22_at_a6 = cos_a5 * cos_a6
+        y = a2 + flange_x * r21_at_a6 + flange_y * r22_at_a6 - flange_z * sin_a5
         y_minus_a2 = y - a2
         a1 = axis_a1 - offset_a1
-        r12_at_a5 = sin_a4*sin_a5
-        r11_at_a6 = cos_a4*cos_a6 + r12_at_a5*sin_a6
-        r12_at_a6 = r12_at_a5*cos_a6 - cos_a4*sin_a6
-        x = a1 + flange_x*r11_at_a6 + flange_y*r12_at_a6 + flange_z*r13_at_a5
+        r12_at_a5 = sin_a4 * sin_a5
+        r11_at_a6 = cos_a4 * cos_a6 + r12_at_a5 * sin_a6
+        r12_at_a6 = r12_at_a5 * cos_a6 - cos_a4 * sin_a6
+        x = a1 + flange_x * r11_at_a6 + flange_y * r12_at_a6 + flange_z * r13_at_a5
         x_minus_a1 = x - a1
         return (
-            (1.0, 0.0, 0.0, z_minus_a3, y_minus_a2*sin_a4, -r33_at_a5*y_minus_a2 - z_minus_a3*sin_a5),
-            (0.0, 1.0, 0.0, 0.0, -z_minus_a3*cos_a4 - x_minus_a1*sin_a4, r33_at_a5*x_minus_a1 - r13_at_a5*z_minus_a3),
-            (0.0, 0.0, 1.0, -x_minus_a1, y_minus_a2*cos_a4, r13_at_a5*y_minus_a2 + x_minus_a1*sin_a5),
+            (1.0, 0.0, 0.0, z_minus_a3, y_minus_a2 * sin_a4, -r33_at_a5 * y_minus_a2 - z_minus_a3 * sin_a5),
+            (
+                0.0,
+                1.0,
+                0.0,
+                0.0,
+                -z_minus_a3 * cos_a4 - x_minus_a1 * sin_a4,
+                r33_at_a5 * x_minus_a1 - r13_at_a5 * z_minus_a3,
+            ),
+            (0.0, 0.0, 1.0, -x_minus_a1, y_minus_a2 * cos_a4, r13_at_a5 * y_minus_a2 + x_minus_a1 * sin_a5),
             (0.0, 0.0, 0.0, 0.0, cos_a4, r13_at_a5),
             (0.0, 0.0, 0.0, 1.0, 0.0, -sin_a5),
             (0.0, 0.0, 0.0, 0.0, -sin_a4, r33_at_a5),
@@ -713,8 +400,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

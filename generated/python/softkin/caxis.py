@@ -25,46 +25,29 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond_turn
 from softkin._orientation import OrientationKinematics, TotalImage
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, are_usable, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
-from softkin._unrolled.caxis import unrolled
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    offset_c: float
-    check_limits: bool
-    lower_c: float
-    upper_c: float
-    unlimited_c: bool
-    lowest_c: float
-    highest_c: float
-    single_c: bool
-    mid_c: float
-    machine_scale: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        offset_c = p["offset_c"]
+        self.lowest_c, self.highest_c, self.single_c, self.mid_c = machine._window("c")
+        self.offset_c = offset_c
 
 
 class CAxis(OrientationKinematics, TwistChoice):
@@ -73,33 +56,17 @@ class CAxis(OrientationKinematics, TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_constants",)
 
     NAME = "Kin_CAxis"
-    AXES = (
-        Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the flange's Z", multi_turn=True),
-    )
+    AXES = (Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the flange's Z", multi_turn=True),)
     PARAMETERS = (
-        Parameter(
-            name="offset_c", kind="angle", unit="deg", meaning="C: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_c", kind="angle", unit="deg", meaning="C: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_c", kind="angle", unit="deg", meaning="C: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("angle", "offset_c", "C: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_c", "C: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_c", "C: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
-    CONFIGURATION = (
-        ConfigurationByte(name="C", kind="period", branches=(), default=0),
-    )
+    CONFIGURATION = (ConfigurationByte(name="C", kind="period", branches=(), default=0),)
     DEFAULT_CONFIGURATION = (0,)
     JACOBIAN_ROWS = ("turn z",)
     MARGINS = ()
@@ -111,7 +78,7 @@ class CAxis(OrientationKinematics, TwistChoice):
     DISTANCE_AXES = (0,)
 
     def __init__(
-        self, *, offset_c: float = 0.0, lower_c: float = 0.0, upper_c: float = 0.0, check_limits: bool = True,
+        self, *, offset_c: float = 0.0, lower_c: float = 0.0, upper_c: float = 0.0, check_limits: bool = True
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -120,38 +87,8 @@ class CAxis(OrientationKinematics, TwistChoice):
         upper_c: C: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(offset_c, lower_c, upper_c, check_limits)
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(lowest_c=-1e12, highest_c=1e12)
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(self, offset_c: float, lower_c: float, upper_c: float, check_limits: bool) -> Constants:
-        """The constants of the machine."""
-        if not (offset_c >= -1e9 and offset_c <= 1e9):
-            raise self._refusal("offset_c: C: axis value at the kinematic zero position", offset_c=offset_c)
-        if not (lower_c >= -1e9 and lower_c <= 1e9):
-            raise self._refusal("lower_c: C: lower limit of the axis, both 0: no limit", lower_c=lower_c)
-        if not (upper_c >= -1e9 and upper_c <= 1e9):
-            raise self._refusal("upper_c: C: upper limit of the axis, both 0: no limit", upper_c=upper_c)
-        if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
-            raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
-        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: whether it has no limits
-        effective_lower_c = lower_c
-        effective_upper_c = upper_c
-        tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
-        lowest_c = -1e12 if unlimited_c else effective_lower_c - tolerance_c
-        highest_c = 1e12 if unlimited_c else effective_upper_c + tolerance_c
-        # at most one turn is inside the limits
-        single_c = (not unlimited_c) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
-        mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
-        machine_scale = 1.0  # characteristic length of the machine
-        return Constants(
-            offset_c=offset_c, check_limits=check_limits, lower_c=effective_lower_c, upper_c=effective_upper_c,
-            unlimited_c=unlimited_c, lowest_c=lowest_c, highest_c=highest_c, single_c=single_c, mid_c=mid_c,
-            machine_scale=machine_scale,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -161,7 +98,7 @@ class CAxis(OrientationKinematics, TwistChoice):
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
-        c = DEGREE*(axis_c - offset_c)
+        c = DEGREE * (axis_c - offset_c)
         cos_c = cos(c)
         sin_c = sin(c)
         return ((0.0, 0.0, 0.0), ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0)), ())
@@ -174,35 +111,33 @@ class CAxis(OrientationKinematics, TwistChoice):
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
-        c = DEGREE*(axis_c - offset_c)
+        c = DEGREE * (axis_c - offset_c)
         cos_c = cos(c)
         sin_c = sin(c)
         return ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         (turn_c,) = turns
         (ref_c,) = reference
         k = self._constants
-        mid_c = k.mid_c
-        offset_c = k.offset_c
-        single_c = k.single_c
+        mid_c, offset_c, single_c = k.mid_c, k.offset_c, k.single_c
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_c <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
-        near_c = 360.0*(turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
-        axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: whole turns added
+        near_c = 360.0 * (turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
+        axis_c = offset_c + arctan2(heading_across, heading_along + 0.0) / DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         return (axis_c,)
@@ -211,19 +146,9 @@ class CAxis(OrientationKinematics, TwistChoice):
         """The test of the limits."""
         (axis_c,) = axes
         k = self._constants
-        highest_c = k.highest_c
-        lowest_c = k.lowest_c
-        # limits of C
-        if not (axis_c >= lowest_c):
-            missing = lowest_c - axis_c
-            if turn := turn_inside(axis_c, lowest_c, highest_c):
-                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "C: below its lower limit [deg]", missing)
-        if not (axis_c <= highest_c):
-            missing = axis_c - highest_c
-            if turn := turn_inside(axis_c, lowest_c, highest_c):
-                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "C: above its upper limit [deg]", missing)
+        highest_c, lowest_c = k.highest_c, k.lowest_c
+        if not lowest_c <= axis_c <= highest_c:
+            return beyond_turn("C", axis_c, lowest_c, highest_c)
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
@@ -266,14 +191,13 @@ class CAxis(OrientationKinematics, TwistChoice):
         """The orientations on a flange, and how far the two axes are apart."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
+        if not are_usable(flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         return (
             ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)),
             (r13, r23, r33),
             (0.0, 0.0, 1.0),
-            sqrt(flange_axis_x*flange_axis_x + flange_axis_y*flange_axis_y),
+            sqrt(flange_axis_x * flange_axis_x + flange_axis_y * flange_axis_y),
         )
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:
@@ -282,27 +206,31 @@ class CAxis(OrientationKinematics, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        cos_heading = heading_along/heading_length
-        sin_heading = heading_across/heading_length
+        cos_heading = heading_along / heading_length
+        sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        """The one branch: see `Mechanism.branches`."""
+        return (self.branch(frame, (), reference),)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        solve = self._one_trusted
-        return solve(frame, signs, reference)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        _, ((r11, r12, _), (r21, r22, _), _) = frame
+        k = self._constants
+        offset_c = k.offset_c
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
+        heading_across = r21 - r12
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        # the tool points exactly the opposite way
+        if not (heading_length > 1e-11):
+            return None
+        return (offset_c + arctan2(heading_across, heading_along) * RADIAN,)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

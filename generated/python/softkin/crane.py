@@ -31,58 +31,33 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
-from softkin._unrolled.crane import unrolled
+from softkin._scalar import DEGREE, RADIAN, arctan2, are_usable, cos, nearest_on_arc, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    offset_r: float
-    offset_theta: float
-    offset_phi: float
-    check_limits: bool
-    lower_r: float
-    upper_r: float
-    unlimited_r: bool
-    lowest_r: float
-    highest_r: float
-    lower_theta: float
-    upper_theta: float
-    unlimited_theta: bool
-    lowest_theta: float
-    highest_theta: float
-    single_theta: bool
-    mid_theta: float
-    lower_phi: float
-    upper_phi: float
-    unlimited_phi: bool
-    lowest_phi: float
-    highest_phi: float
-    machine_scale: float
-    machine_scale_times_free_angle: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        offset_r, offset_theta, offset_phi = p["offset_r"], p["offset_theta"], p["offset_phi"]
+        self.lowest_r, self.highest_r, *_ = machine._window("r", (offset_r, 1e9 + offset_r))
+        self.lowest_theta, self.highest_theta, self.single_theta, self.mid_theta = machine._window("theta")
+        self.lowest_phi, self.highest_phi, *_ = machine._window("phi", (offset_phi, 180.0 + offset_phi))
+        machine_scale = 1.0  # characteristic length of the machine
+        machine_scale_times_free_angle = 1e-11 * machine_scale
+        self.offset_r, self.offset_theta, self.offset_phi = offset_r, offset_theta, offset_phi
+        self.machine_scale, self.machine_scale_times_free_angle = machine_scale, machine_scale_times_free_angle
 
 
 class Crane(OffsetKinematics):
@@ -91,7 +66,7 @@ class Crane(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_constants",)
 
     NAME = "Kin_Crane"
     AXES = (
@@ -100,57 +75,18 @@ class Crane(OffsetKinematics):
         Axis(name="Phi", kind="rotary", unit="deg", meaning="Polar angle, from +Z", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="offset_r", kind="distance", unit="u", meaning="R: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_theta", kind="angle", unit="deg",
-            meaning="Theta: axis value at the kinematic zero position", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_phi", kind="angle", unit="deg", meaning="Phi: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_r", kind="distance", unit="u",
-            meaning="R: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_r", kind="distance", unit="u",
-            meaning="R: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_theta", kind="angle", unit="deg",
-            meaning="Theta: lower limit of the axis, both 0: no limit", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_theta", kind="angle", unit="deg",
-            meaning="Theta: upper limit of the axis, both 0: no limit", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_phi", kind="angle", unit="deg",
-            meaning="Phi: lower limit of the axis, both 0: joint value 0 .. 180", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_phi", kind="angle", unit="deg",
-            meaning="Phi: upper limit of the axis, both 0: joint value 0 .. 180", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("distance", "offset_r", "R: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_theta", "Theta: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_phi", "Phi: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_r", "R: lower limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "upper_r", "R: upper limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("angle", "lower_theta", "Theta: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_theta", "Theta: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_phi", "Phi: lower limit of the axis, both 0: joint value 0 .. 180"),
+        Parameter.of("angle", "upper_phi", "Phi: upper limit of the axis, both 0: joint value 0 .. 180"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
-    CONFIGURATION = (
-        ConfigurationByte(name="Theta", kind="period", branches=(), default=0),
-    )
+    CONFIGURATION = (ConfigurationByte(name="Theta", kind="period", branches=(), default=0),)
     DEFAULT_CONFIGURATION = (0,)
     JACOBIAN_ROWS = ("x", "y", "z")
     MARGINS = ("free_theta", "free_phi")
@@ -162,9 +98,18 @@ class Crane(OffsetKinematics):
     DISTANCE_AXES = (1, 2)
 
     def __init__(
-        self, *, offset_r: float = 0.0, offset_theta: float = 0.0, offset_phi: float = 0.0, lower_r: float = 0.0,
-        upper_r: float = 0.0, lower_theta: float = 0.0, upper_theta: float = 0.0, lower_phi: float = 0.0,
-        upper_phi: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        offset_r: float = 0.0,
+        offset_theta: float = 0.0,
+        offset_phi: float = 0.0,
+        lower_r: float = 0.0,
+        upper_r: float = 0.0,
+        lower_theta: float = 0.0,
+        upper_theta: float = 0.0,
+        lower_phi: float = 0.0,
+        upper_phi: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -179,105 +124,15 @@ class Crane(OffsetKinematics):
         upper_phi: Phi: upper limit of the axis, both 0: joint value 0 .. 180 [deg]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            offset_r, offset_theta, offset_phi, lower_r, upper_r, lower_theta, upper_theta, lower_phi, upper_phi,
-            check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_r=-1e12, lowest_theta=-1e12, lowest_phi=-1e12, highest_r=1e12, highest_theta=1e12,
-                highest_phi=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, offset_r: float, offset_theta: float, offset_phi: float, lower_r: float, upper_r: float,
-        lower_theta: float, upper_theta: float, lower_phi: float, upper_phi: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (offset_r >= -1e9 and offset_r <= 1e9):
-            raise self._refusal("offset_r: R: axis value at the kinematic zero position", offset_r=offset_r)
-        if not (offset_theta >= -1e9 and offset_theta <= 1e9):
-            raise self._refusal(
-                "offset_theta: Theta: axis value at the kinematic zero position", offset_theta=offset_theta,
-            )
-        if not (offset_phi >= -1e9 and offset_phi <= 1e9):
-            raise self._refusal("offset_phi: Phi: axis value at the kinematic zero position", offset_phi=offset_phi)
-        if not (lower_r >= -1e9 and lower_r <= 1e9):
-            raise self._refusal("lower_r: R: lower limit of the axis, both 0: joint value 0 or more", lower_r=lower_r)
-        if not (upper_r >= -1e9 and upper_r <= 1e9):
-            raise self._refusal("upper_r: R: upper limit of the axis, both 0: joint value 0 or more", upper_r=upper_r)
-        if not (lower_theta >= -1e9 and lower_theta <= 1e9):
-            raise self._refusal(
-                "lower_theta: Theta: lower limit of the axis, both 0: no limit", lower_theta=lower_theta,
-            )
-        if not (upper_theta >= -1e9 and upper_theta <= 1e9):
-            raise self._refusal(
-                "upper_theta: Theta: upper limit of the axis, both 0: no limit", upper_theta=upper_theta,
-            )
-        if not (lower_phi >= -1e9 and lower_phi <= 1e9):
-            raise self._refusal(
-                "lower_phi: Phi: lower limit of the axis, both 0: joint value 0 .. 180", lower_phi=lower_phi,
-            )
-        if not (upper_phi >= -1e9 and upper_phi <= 1e9):
-            raise self._refusal(
-                "upper_phi: Phi: upper limit of the axis, both 0: joint value 0 .. 180", upper_phi=upper_phi,
-            )
-        if not ((lower_r < upper_r) or (abs(lower_r) + abs(upper_r) <= 0.0)):
-            raise self._refusal("lower_r below upper_r, or both 0", lower_r=lower_r, upper_r=upper_r)
-        unlimited_r = False  # r: whether it has no limits
-        effective_lower_r = lower_r if abs(lower_r) + abs(upper_r) > 0.0 else offset_r
-        effective_upper_r = upper_r if abs(lower_r) + abs(upper_r) > 0.0 else 1e9 + offset_r
-        tolerance_r = 1e-9 + 1e-9*abs(effective_lower_r) + 1e-9*abs(effective_upper_r)
-        lowest_r = -1e12 if unlimited_r else effective_lower_r - tolerance_r
-        highest_r = 1e12 if unlimited_r else effective_upper_r + tolerance_r
-        if not ((lower_theta < upper_theta) or (abs(lower_theta) + abs(upper_theta) <= 0.0)):
-            raise self._refusal(
-                "lower_theta below upper_theta, or both 0", lower_theta=lower_theta, upper_theta=upper_theta,
-            )
-        unlimited_theta = abs(lower_theta) + abs(upper_theta) <= 0.0  # theta: whether it has no limits
-        effective_lower_theta = lower_theta
-        effective_upper_theta = upper_theta
-        tolerance_theta = 1e-9 + 1e-9*abs(effective_lower_theta) + 1e-9*abs(effective_upper_theta)
-        lowest_theta = -1e12 if unlimited_theta else effective_lower_theta - tolerance_theta
-        highest_theta = 1e12 if unlimited_theta else effective_upper_theta + tolerance_theta
-        # at most one turn is inside the limits
-        single_theta = (
-            (not unlimited_theta) and (effective_upper_theta - effective_lower_theta <= 350.0 + tolerance_theta)
-        )
-        mid_theta = 0.5*effective_lower_theta + 0.5*effective_upper_theta
-        if not ((lower_phi < upper_phi) or (abs(lower_phi) + abs(upper_phi) <= 0.0)):
-            raise self._refusal("lower_phi below upper_phi, or both 0", lower_phi=lower_phi, upper_phi=upper_phi)
-        unlimited_phi = False  # phi: whether it has no limits
-        effective_lower_phi = lower_phi if abs(lower_phi) + abs(upper_phi) > 0.0 else offset_phi
-        effective_upper_phi = upper_phi if abs(lower_phi) + abs(upper_phi) > 0.0 else 180.0 + offset_phi
-        tolerance_phi = 1e-9 + 1e-9*abs(effective_lower_phi) + 1e-9*abs(effective_upper_phi)
-        lowest_phi = -1e12 if unlimited_phi else effective_lower_phi - tolerance_phi
-        highest_phi = 1e12 if unlimited_phi else effective_upper_phi + tolerance_phi
-        machine_scale = 1.0  # characteristic length of the machine
-        machine_scale_times_free_angle = 1e-11*machine_scale
-        return Constants(
-            offset_r=offset_r, offset_theta=offset_theta, offset_phi=offset_phi, check_limits=check_limits,
-            lower_r=effective_lower_r, upper_r=effective_upper_r, unlimited_r=unlimited_r, lowest_r=lowest_r,
-            highest_r=highest_r, lower_theta=effective_lower_theta, upper_theta=effective_upper_theta,
-            unlimited_theta=unlimited_theta, lowest_theta=lowest_theta, highest_theta=highest_theta,
-            single_theta=single_theta, mid_theta=mid_theta, lower_phi=effective_lower_phi,
-            upper_phi=effective_upper_phi, unlimited_phi=unlimited_phi, lowest_phi=lowest_phi,
-            highest_phi=highest_phi, machine_scale=machine_scale,
-            machine_scale_times_free_angle=machine_scale_times_free_angle,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
-        offset_phi = k.offset_phi
-        offset_r = k.offset_r
-        offset_theta = k.offset_theta
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
+        offset_phi, offset_r, offset_theta = k.offset_phi, k.offset_r, k.offset_theta
+        if not are_usable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
@@ -287,26 +142,24 @@ class Crane(OffsetKinematics):
         # Phi where the machine has no pose
         if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
-        theta = DEGREE*(axis_theta - offset_theta)
+        theta = DEGREE * (axis_theta - offset_theta)
         cos_theta = cos(theta)
-        phi = DEGREE*axis_phi_minus_offset_phi
+        phi = DEGREE * axis_phi_minus_offset_phi
         sin_phi = sin(phi)
-        r_times_sin_phi = r*sin_phi
-        x = r_times_sin_phi*cos_theta  # x from the x equation, which is linear in it
+        r_times_sin_phi = r * sin_phi
+        x = r_times_sin_phi * cos_theta  # x from the x equation, which is linear in it
         sin_theta = sin(theta)
-        y = r_times_sin_phi*sin_theta  # y from the y equation, which is linear in it
+        y = r_times_sin_phi * sin_theta  # y from the y equation, which is linear in it
         cos_phi = cos(phi)
-        z = r*cos_phi  # z from the z equation, which is linear in it
+        z = r * cos_phi  # z from the z equation, which is linear in it
         return ((x, y, z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ())
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
-        offset_phi = k.offset_phi
-        offset_r = k.offset_r
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
+        offset_phi, offset_r = k.offset_phi, k.offset_r
+        if not are_usable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
         axis_r_minus_offset_r = axis_r - offset_r
         # R where the machine has no pose
@@ -319,41 +172,33 @@ class Crane(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (turn_theta,) = turns
         _, ref_theta, ref_phi = reference
         k = self._constants
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_theta = k.mid_theta
-        offset_phi = k.offset_phi
-        offset_r = k.offset_r
-        offset_theta = k.offset_theta
-        single_theta = k.single_theta
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_phi <= 1e9
-            and -1e9 <= ref_theta <= 1e9
-        ):
+        machine_scale_times_free_angle, mid_theta = k.machine_scale_times_free_angle, k.mid_theta
+        offset_phi, offset_r, offset_theta, single_theta = k.offset_phi, k.offset_r, k.offset_theta, k.single_theta
+        if not are_usable(x, y, z, ref_phi, ref_theta):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
+        radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
         axis_r = offset_r + radius_phi
         # in the singularity: the angle of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
             direction_y_theta = y
         else:
-            free_theta = (ref_theta - offset_theta)*DEGREE
+            free_theta = (ref_theta - offset_theta) * DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
         # Theta: without a commanded turn, the value nearest to this
         open_theta = mid_theta if single_theta else ref_theta
-        near_theta = 360.0*(turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
+        near_theta = 360.0 * (turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
         # Theta: whole turns added
-        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) / DEGREE
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
         # in the singularity: the angle of the reference
@@ -361,64 +206,33 @@ class Crane(OffsetKinematics):
             direction_x_phi = z
             direction_y_phi = radius_theta
         else:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)
+            free_phi = (ref_phi - offset_phi) * DEGREE
+            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0 * DEGREE, 90.0 * DEGREE)
             direction_x_phi = cos(part_of_direction_y_phi)
             direction_y_phi = sin(part_of_direction_y_phi)
-        axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
+        axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) / DEGREE
         return (axis_r, axis_theta, axis_phi)
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
         """The test of the limits."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
-        highest_phi = k.highest_phi
-        highest_r = k.highest_r
-        highest_theta = k.highest_theta
-        lowest_phi = k.lowest_phi
-        lowest_r = k.lowest_r
-        lowest_theta = k.lowest_theta
-        # limits of Theta
-        if not (axis_theta >= lowest_theta):
-            missing = lowest_theta - axis_theta
-            if turn := turn_inside(axis_theta, lowest_theta, highest_theta):
-                return Diagnosis(
-                    Status.UNREACHABLE, "Theta: this turn is beyond a limit, name one inside [deg]", missing, turn,
-                )
-            return Diagnosis(Status.UNREACHABLE, "Theta: below its lower limit [deg]", missing)
-        if not (axis_theta <= highest_theta):
-            missing = axis_theta - highest_theta
-            if turn := turn_inside(axis_theta, lowest_theta, highest_theta):
-                return Diagnosis(
-                    Status.UNREACHABLE, "Theta: this turn is beyond a limit, name one inside [deg]", missing, turn,
-                )
-            return Diagnosis(Status.UNREACHABLE, "Theta: above its upper limit [deg]", missing)
-        # limits of R
-        if not (axis_r >= lowest_r):
-            missing = lowest_r - axis_r
-            return Diagnosis(Status.UNREACHABLE, "R: below its lower limit [u]", missing)
-        if not (axis_r <= highest_r):
-            missing = axis_r - highest_r
-            return Diagnosis(Status.UNREACHABLE, "R: above its upper limit [u]", missing)
-        # limits of Phi
-        if not (axis_phi >= lowest_phi):
-            missing = lowest_phi - axis_phi
-            return Diagnosis(Status.UNREACHABLE, "Phi: below its lower limit [deg]", missing)
-        if not (axis_phi <= highest_phi):
-            missing = axis_phi - highest_phi
-            return Diagnosis(Status.UNREACHABLE, "Phi: above its upper limit [deg]", missing)
+        highest_phi, highest_r, highest_theta, lowest_phi = k.highest_phi, k.highest_r, k.highest_theta, k.lowest_phi
+        lowest_r, lowest_theta = k.lowest_r, k.lowest_theta
+        if not lowest_theta <= axis_theta <= highest_theta:
+            return beyond_turn("Theta", axis_theta, lowest_theta, highest_theta)
+        if not lowest_r <= axis_r <= highest_r:
+            return beyond("R", axis_r, lowest_r, highest_r, "u")
+        if not lowest_phi <= axis_phi <= highest_phi:
+            return beyond("Phi", axis_phi, lowest_phi, highest_phi, "deg")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
-        machine_scale = k.machine_scale
-        offset_phi = k.offset_phi
-        offset_r = k.offset_r
-        offset_theta = k.offset_theta
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
+        machine_scale, offset_phi, offset_r, offset_theta = k.machine_scale, k.offset_phi, k.offset_r, k.offset_theta
+        if not are_usable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
@@ -428,31 +242,29 @@ class Crane(OffsetKinematics):
         # Phi where the machine has no pose
         if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
-        phi = DEGREE*axis_phi_minus_offset_phi
+        phi = DEGREE * axis_phi_minus_offset_phi
         sin_phi = sin(phi)
         cos_phi = cos(phi)
-        z = r*cos_phi  # z from the z equation, which is linear in it
-        theta = DEGREE*(axis_theta - offset_theta)
+        z = r * cos_phi  # z from the z equation, which is linear in it
+        theta = DEGREE * (axis_theta - offset_theta)
         cos_theta = cos(theta)
-        r_times_sin_phi = r*sin_phi
-        x = r_times_sin_phi*cos_theta  # x from the x equation, which is linear in it
+        r_times_sin_phi = r * sin_phi
+        x = r_times_sin_phi * cos_theta  # x from the x equation, which is linear in it
         sin_theta = sin(theta)
-        y = r_times_sin_phi*sin_theta  # y from the y equation, which is linear in it
-        radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
-        length_free_phi = radius_phi/machine_scale
-        margin_free_phi = 1.0 if length_free_phi > 1e-11 else 0.0  # 0 where nothing determines the axis, else 1 or -1
+        y = r_times_sin_phi * sin_theta  # y from the y equation, which is linear in it
+        radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
+        length_free_phi = radius_phi / machine_scale
+        # 0 where nothing determines the axis, else 1 or -1
+        margin_free_phi = 1.0 if length_free_phi > 1e-11 else 0.0
         return (sin_phi, margin_free_phi)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
-        offset_phi = k.offset_phi
-        offset_r = k.offset_r
-        offset_theta = k.offset_theta
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
+        offset_phi, offset_r, offset_theta = k.offset_phi, k.offset_r, k.offset_theta
+        if not are_usable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
@@ -462,17 +274,17 @@ class Crane(OffsetKinematics):
         # Phi where the machine has no pose
         if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
-        theta = DEGREE*(axis_theta - offset_theta)
+        theta = DEGREE * (axis_theta - offset_theta)
         cos_theta = cos(theta)
-        phi = DEGREE*axis_phi_minus_offset_phi
+        phi = DEGREE * axis_phi_minus_offset_phi
         sin_phi = sin(phi)
         sin_theta = sin(theta)
         cos_phi = cos(phi)
-        cos_phi_times_r = r*cos_phi
-        r_times_sin_phi = r*sin_phi
+        cos_phi_times_r = r * cos_phi
+        r_times_sin_phi = r * sin_phi
         return (
-            (cos_theta*sin_phi, -r_times_sin_phi*sin_theta, cos_phi_times_r*cos_theta),
-            (sin_phi*sin_theta, r_times_sin_phi*cos_theta, cos_phi_times_r*sin_theta),
+            (cos_theta * sin_phi, -r_times_sin_phi * sin_theta, cos_phi_times_r * cos_theta),
+            (sin_phi * sin_theta, r_times_sin_phi * cos_theta, cos_phi_times_r * sin_theta),
             (cos_phi, 0.0, -r_times_sin_phi),
         )
 
@@ -481,7 +293,7 @@ class Crane(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -489,38 +301,31 @@ class Crane(OffsetKinematics):
         (turn_theta,) = turns
         _, ref_theta, ref_phi = reference
         k = self._constants
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_theta = k.mid_theta
-        offset_phi = k.offset_phi
-        offset_r = k.offset_r
-        offset_theta = k.offset_theta
-        single_theta = k.single_theta
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_phi <= 1e9
-            and -1e9 <= ref_theta <= 1e9
-        ):
+        machine_scale_times_free_angle, mid_theta = k.machine_scale_times_free_angle, k.mid_theta
+        offset_phi, offset_r, offset_theta, single_theta = k.offset_phi, k.offset_r, k.offset_theta, k.single_theta
+        if not are_usable(x, y, z, point_x, point_y, point_z, ref_phi, ref_theta):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_z = z - point_z  # position of the flange: the point less its offset
         flange_x = x - point_x  # position of the flange: the point less its offset
         flange_y = y - point_y  # position of the flange: the point less its offset
-        radius_theta = sqrt(flange_x*flange_x + flange_y*flange_y)  # polar coordinates: the radius at angle theta
-        radius_phi = sqrt(flange_z*flange_z + radius_theta*radius_theta)  # polar coordinates: the radius at angle phi
+        # polar coordinates: the radius at angle theta
+        radius_theta = sqrt(flange_x * flange_x + flange_y * flange_y)
+        # polar coordinates: the radius at angle phi
+        radius_phi = sqrt(flange_z * flange_z + radius_theta * radius_theta)
         axis_r = offset_r + radius_phi
         # in the singularity: the angle of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = flange_x
             direction_y_theta = flange_y
         else:
-            free_theta = (ref_theta - offset_theta)*DEGREE
+            free_theta = (ref_theta - offset_theta) * DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
         # Theta: without a commanded turn, the value nearest to this
         open_theta = mid_theta if single_theta else ref_theta
-        near_theta = 360.0*(turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
+        near_theta = 360.0 * (turn_theta - 1 if turn_theta > 0 else turn_theta) if turn_theta != 0 else open_theta
         # Theta: whole turns added
-        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) / DEGREE
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
         # in the singularity: the angle of the reference
@@ -528,21 +333,19 @@ class Crane(OffsetKinematics):
             direction_x_phi = flange_z
             direction_y_phi = radius_theta
         else:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)
+            free_phi = (ref_phi - offset_phi) * DEGREE
+            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0 * DEGREE, 90.0 * DEGREE)
             direction_x_phi = cos(part_of_direction_y_phi)
             direction_y_phi = sin(part_of_direction_y_phi)
-        axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
+        axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0) / DEGREE
         return (axis_r, axis_theta, axis_phi)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
-        offset_phi = k.offset_phi
-        offset_r = k.offset_r
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
+        offset_phi, offset_r = k.offset_phi, k.offset_r
+        if not are_usable(axis_phi, axis_r, axis_theta):
             return Status.BAD_INPUT
         axis_r_minus_offset_r = axis_r - offset_r
         # R where the machine has no pose
@@ -555,18 +358,39 @@ class Crane(OffsetKinematics):
         return ()
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        """The one branch: see `Mechanism.branches`."""
+        return (self.branch(frame, (), reference),)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        solve = self._one_trusted
-        return solve(frame, signs, reference)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        (x, y, z), _ = frame
+        _, ref_theta, ref_phi = 3 * (0.0,) if reference is None else reference
+        k = self._constants
+        machine_scale_times_free_angle, offset_phi = k.machine_scale_times_free_angle, k.offset_phi
+        offset_r, offset_theta = k.offset_r, k.offset_theta
+        radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
+        # in the singularity: the angle of the reference
+        if radius_theta > machine_scale_times_free_angle:
+            direction_x_theta = x
+            direction_y_theta = y
+        else:
+            free_theta = (ref_theta - offset_theta) * DEGREE
+            direction_x_theta = cos(free_theta)
+            direction_y_theta = sin(free_theta)
+        # in the singularity: the angle of the reference
+        if radius_phi > machine_scale_times_free_angle:
+            direction_x_phi = z
+            direction_y_phi = radius_theta
+        else:
+            part_of_direction_y_phi = nearest_on_arc((ref_phi - offset_phi) * DEGREE, 90.0 * DEGREE, 90.0 * DEGREE)
+            direction_x_phi = cos(part_of_direction_y_phi)
+            direction_y_phi = sin(part_of_direction_y_phi)
+        return (
+            offset_r + radius_phi,
+            offset_theta + arctan2(direction_y_theta, direction_x_theta) * RADIAN,
+            offset_phi + arctan2(direction_y_phi, direction_x_phi) * RADIAN,
+        )
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

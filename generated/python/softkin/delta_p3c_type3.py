@@ -36,129 +36,210 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.delta_p3c_type3 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    azimuth_1: float
-    azimuth_2: float
-    azimuth_3: float
-    base_radius_1: float
-    base_radius_2: float
-    base_radius_3: float
-    inner_arm_1: float
-    inner_arm_2: float
-    inner_arm_3: float
-    outer_arm_1: float
-    outer_arm_2: float
-    outer_arm_3: float
-    tcp_radius_1: float
-    tcp_radius_2: float
-    tcp_radius_3: float
-    offset_a1: float
-    offset_a2: float
-    offset_a3: float
-    tcp_above: bool
-    min_type2_margin: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    single_a1: bool
-    mid_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    single_a2: bool
-    mid_a2: float
-    lower_a3: float
-    upper_a3: float
-    unlimited_a3: bool
-    lowest_a3: float
-    highest_a3: float
-    single_a3: bool
-    mid_a3: float
-    machine_scale: float
-    sin_azimuth_1: float
-    sin_azimuth_2: float
-    sin_azimuth_3: float
-    cos_azimuth_1: float
-    cos_azimuth_2: float
-    cos_azimuth_3: float
-    assembly_sign: float
-    sin_azimuth_1_times_tcp_radius_1: float
-    sin_azimuth_2_times_tcp_radius_2: float
-    sin_azimuth_3_times_tcp_radius_3: float
-    cos_azimuth_1_times_tcp_radius_1: float
-    cos_azimuth_2_times_tcp_radius_2: float
-    cos_azimuth_3_times_tcp_radius_3: float
-    part_of_normal_divisor: float
-    outer_arm_1_squared: float
-    outer_arm_1_squared_times_rounding: float
-    inner_arm_1_times_sin_azimuth_1: float
-    part_of_pivot_1_y: float
-    inner_arm_2_times_sin_azimuth_2: float
-    part_of_pivot_2_y: float
-    inner_arm_3_times_sin_azimuth_3: float
-    part_of_pivot_3_y: float
-    cos_azimuth_1_times_inner_arm_1: float
-    part_of_pivot_1_x: float
-    cos_azimuth_2_times_inner_arm_2: float
-    part_of_pivot_2_x: float
-    cos_azimuth_3_times_inner_arm_3: float
-    part_of_pivot_3_x: float
-    part_of_projection_2: float
-    part_of_projection_3: float
-    inner_arm_1_times_shortest_link: float
-    inner_arm_2_times_shortest_link: float
-    inner_arm_3_times_shortest_link: float
-    part_of_type2_rods_coplanar: float
-    part_of_margin_rods_coplanar: float
-    part_of_determinant_divisor: float
-    twice_cos_azimuth_1: float
-    twice_sin_azimuth_1: float
-    twice_inner_arm_1: float
-    twice_cos_azimuth_2: float
-    twice_sin_azimuth_2: float
-    twice_inner_arm_2: float
-    twice_cos_azimuth_3: float
-    twice_sin_azimuth_3: float
-    twice_inner_arm_3: float
-    inner_arm_1_times_sin_azimuth_1_times_2: float
-    cos_azimuth_1_times_inner_arm_1_times_2: float
-    inner_arm_2_times_sin_azimuth_2_times_2: float
-    cos_azimuth_2_times_inner_arm_2_times_2: float
-    inner_arm_3_times_sin_azimuth_3_times_2: float
-    cos_azimuth_3_times_inner_arm_3_times_2: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        azimuth_1, azimuth_2, azimuth_3 = p["azimuth_1"], p["azimuth_2"], p["azimuth_3"]
+        base_radius_1, base_radius_2, base_radius_3 = p["base_radius_1"], p["base_radius_2"], p["base_radius_3"]
+        inner_arm_1, inner_arm_2, inner_arm_3 = p["inner_arm_1"], p["inner_arm_2"], p["inner_arm_3"]
+        outer_arm_1, outer_arm_2, outer_arm_3 = p["outer_arm_1"], p["outer_arm_2"], p["outer_arm_3"]
+        tcp_radius_1, tcp_radius_2, tcp_radius_3 = p["tcp_radius_1"], p["tcp_radius_2"], p["tcp_radius_3"]
+        offset_a1, offset_a2, offset_a3 = p["offset_a1"], p["offset_a2"], p["offset_a3"]
+        tcp_above, min_type2_margin = bool(p["tcp_above"]), p["min_type2_margin"]
+        if not (
+            abs(
+                cos(DEGREE * azimuth_2) * sin(DEGREE * azimuth_1)
+                + cos(DEGREE * azimuth_3) * sin(DEGREE * azimuth_2)
+                + cos(DEGREE * azimuth_1) * sin(DEGREE * azimuth_3)
+                - cos(DEGREE * azimuth_3) * sin(DEGREE * azimuth_1)
+                - cos(DEGREE * azimuth_1) * sin(DEGREE * azimuth_2)
+                - cos(DEGREE * azimuth_2) * sin(DEGREE * azimuth_3)
+            )
+            > 1e-6
+        ):
+            raise machine._refusal("the arms must not all point the same way", "azimuth_1", "azimuth_2", "azimuth_3")
+        # what every arm reaches, seen from above: a disc
+        reach_x_1 = (base_radius_1 - tcp_radius_1) * cos(DEGREE * azimuth_1)
+        reach_y_1 = (base_radius_1 - tcp_radius_1) * sin(DEGREE * azimuth_1)
+        reach_1 = inner_arm_1 + outer_arm_1
+        reach_x_2 = (base_radius_2 - tcp_radius_2) * cos(DEGREE * azimuth_2)
+        reach_y_2 = (base_radius_2 - tcp_radius_2) * sin(DEGREE * azimuth_2)
+        reach_2 = inner_arm_2 + outer_arm_2
+        reach_x_3 = (base_radius_3 - tcp_radius_3) * cos(DEGREE * azimuth_3)
+        reach_y_3 = (base_radius_3 - tcp_radius_3) * sin(DEGREE * azimuth_3)
+        reach_3 = inner_arm_3 + outer_arm_3
+        side_12_x = reach_x_2 - reach_x_1
+        side_12_y = reach_y_2 - reach_y_1
+        side_13_x = reach_x_3 - reach_x_1
+        side_13_y = reach_y_3 - reach_y_1
+        side_23_x = reach_x_3 - reach_x_2
+        side_23_y = reach_y_3 - reach_y_2
+        if not (
+            side_12_x * side_12_x + side_12_y * side_12_y <= (reach_1 + reach_2) * (reach_1 + reach_2)
+            and side_13_x * side_13_x + side_13_y * side_13_y <= (reach_1 + reach_3) * (reach_1 + reach_3)
+            and side_23_x * side_23_x + side_23_y * side_23_y <= (reach_2 + reach_3) * (reach_2 + reach_3)
+        ):
+            raise machine._refusal("arms long enough to reach the plate")
+        corner_area = side_12_x * side_13_y - side_12_y * side_13_x
+        power_2 = reach_1 * reach_1 + side_12_x * side_12_x + side_12_y * side_12_y - reach_2 * reach_2
+        power_3 = reach_1 * reach_1 + side_13_x * side_13_x + side_13_y * side_13_y - reach_3 * reach_3
+        equal_power_x = power_2 * side_13_y - power_3 * side_12_y
+        equal_power_y = power_3 * side_12_x - power_2 * side_13_x
+        weight_2 = equal_power_x * side_13_y - equal_power_y * side_13_x
+        weight_3 = equal_power_y * side_12_x - equal_power_x * side_12_y
+        if not (
+            (weight_2 < 0.0)
+            or (weight_3 < 0.0)
+            or (weight_2 + weight_3 > 2.0 * corner_area * corner_area)
+            or (
+                equal_power_x * equal_power_x + equal_power_y * equal_power_y
+                <= 4.0 * corner_area * corner_area * reach_1 * reach_1
+            )
+        ):
+            raise machine._refusal("arms long enough to reach the plate")
+        self.lowest_a1, self.highest_a1, self.single_a1, self.mid_a1 = machine._window("a1")
+        self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
+        self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
+        # characteristic length of the machine
+        machine_scale = (
+            base_radius_1
+            + base_radius_2
+            + base_radius_3
+            + inner_arm_1
+            + inner_arm_2
+            + inner_arm_3
+            + outer_arm_1
+            + outer_arm_2
+            + outer_arm_3
+            + tcp_radius_1
+            + tcp_radius_2
+            + tcp_radius_3
+        )
+        sin_azimuth_1 = sin(DEGREE * azimuth_1)
+        sin_azimuth_2 = sin(DEGREE * azimuth_2)
+        sin_azimuth_3 = sin(DEGREE * azimuth_3)
+        cos_azimuth_1 = cos(DEGREE * azimuth_1)
+        cos_azimuth_2 = cos(DEGREE * azimuth_2)
+        cos_azimuth_3 = cos(DEGREE * azimuth_3)
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = (
+            (1.0 if tcp_above else -1.0)
+            if cos_azimuth_1 * sin_azimuth_2
+            + cos_azimuth_2 * sin_azimuth_3
+            + cos_azimuth_3 * sin_azimuth_1
+            - cos_azimuth_1 * sin_azimuth_3
+            - cos_azimuth_2 * sin_azimuth_1
+            - cos_azimuth_3 * sin_azimuth_2
+            > 0.0
+            else (-1.0 if tcp_above else 1.0)
+        )
+        sin_azimuth_1_times_tcp_radius_1 = tcp_radius_1 * sin_azimuth_1
+        sin_azimuth_2_times_tcp_radius_2 = tcp_radius_2 * sin_azimuth_2
+        sin_azimuth_3_times_tcp_radius_3 = tcp_radius_3 * sin_azimuth_3
+        cos_azimuth_1_times_tcp_radius_1 = tcp_radius_1 * cos_azimuth_1
+        cos_azimuth_2_times_tcp_radius_2 = tcp_radius_2 * cos_azimuth_2
+        cos_azimuth_3_times_tcp_radius_3 = tcp_radius_3 * cos_azimuth_3
+        part_of_normal_divisor = 1e-22 * outer_arm_1 * outer_arm_1 * outer_arm_1 * outer_arm_1
+        outer_arm_1_squared = outer_arm_1 * outer_arm_1
+        outer_arm_1_squared_times_rounding = 1e-12 * outer_arm_1 * outer_arm_1
+        inner_arm_1_times_sin_azimuth_1 = inner_arm_1 * sin_azimuth_1
+        part_of_pivot_1_y = base_radius_1 * sin_azimuth_1 - sin_azimuth_1_times_tcp_radius_1
+        inner_arm_2_times_sin_azimuth_2 = inner_arm_2 * sin_azimuth_2
+        part_of_pivot_2_y = base_radius_2 * sin_azimuth_2 - sin_azimuth_2_times_tcp_radius_2
+        inner_arm_3_times_sin_azimuth_3 = inner_arm_3 * sin_azimuth_3
+        part_of_pivot_3_y = base_radius_3 * sin_azimuth_3 - sin_azimuth_3_times_tcp_radius_3
+        cos_azimuth_1_times_inner_arm_1 = inner_arm_1 * cos_azimuth_1
+        part_of_pivot_1_x = base_radius_1 * cos_azimuth_1 - cos_azimuth_1_times_tcp_radius_1
+        cos_azimuth_2_times_inner_arm_2 = inner_arm_2 * cos_azimuth_2
+        part_of_pivot_2_x = base_radius_2 * cos_azimuth_2 - cos_azimuth_2_times_tcp_radius_2
+        cos_azimuth_3_times_inner_arm_3 = inner_arm_3 * cos_azimuth_3
+        part_of_pivot_3_x = base_radius_3 * cos_azimuth_3 - cos_azimuth_3_times_tcp_radius_3
+        outer_arm_1_squared_times_half = 0.5 * outer_arm_1 * outer_arm_1
+        part_of_projection_2 = outer_arm_1_squared_times_half - 0.5 * outer_arm_2 * outer_arm_2
+        part_of_projection_3 = outer_arm_1_squared_times_half - 0.5 * outer_arm_3 * outer_arm_3
+        inner_arm_1_times_shortest_link = 1e-9 * inner_arm_1
+        inner_arm_2_times_shortest_link = 1e-9 * inner_arm_2
+        inner_arm_3_times_shortest_link = 1e-9 * inner_arm_3
+        part_of_type2_rods_coplanar = assembly_sign / (outer_arm_1 * outer_arm_2 * outer_arm_3)
+        part_of_margin_rods_coplanar = outer_arm_1 * outer_arm_2 * outer_arm_3
+        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        twice_cos_azimuth_1 = 2.0 * cos_azimuth_1
+        twice_sin_azimuth_1 = 2.0 * sin_azimuth_1
+        twice_inner_arm_1 = 2.0 * inner_arm_1
+        twice_cos_azimuth_2 = 2.0 * cos_azimuth_2
+        twice_sin_azimuth_2 = 2.0 * sin_azimuth_2
+        twice_inner_arm_2 = 2.0 * inner_arm_2
+        twice_cos_azimuth_3 = 2.0 * cos_azimuth_3
+        twice_sin_azimuth_3 = 2.0 * sin_azimuth_3
+        twice_inner_arm_3 = 2.0 * inner_arm_3
+        inner_arm_1_times_sin_azimuth_1_times_2 = 2.0 * inner_arm_1 * sin_azimuth_1
+        cos_azimuth_1_times_inner_arm_1_times_2 = 2.0 * inner_arm_1 * cos_azimuth_1
+        inner_arm_2_times_sin_azimuth_2_times_2 = 2.0 * inner_arm_2 * sin_azimuth_2
+        cos_azimuth_2_times_inner_arm_2_times_2 = 2.0 * inner_arm_2 * cos_azimuth_2
+        inner_arm_3_times_sin_azimuth_3_times_2 = 2.0 * inner_arm_3 * sin_azimuth_3
+        cos_azimuth_3_times_inner_arm_3_times_2 = 2.0 * inner_arm_3 * cos_azimuth_3
+        self.base_radius_1, self.base_radius_2, self.base_radius_3 = base_radius_1, base_radius_2, base_radius_3
+        self.inner_arm_1, self.inner_arm_2, self.inner_arm_3 = inner_arm_1, inner_arm_2, inner_arm_3
+        self.outer_arm_1, self.outer_arm_2, self.outer_arm_3 = outer_arm_1, outer_arm_2, outer_arm_3
+        self.tcp_radius_1, self.tcp_radius_2, self.tcp_radius_3 = tcp_radius_1, tcp_radius_2, tcp_radius_3
+        self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
+        self.min_type2_margin, self.sin_azimuth_1, self.sin_azimuth_2 = min_type2_margin, sin_azimuth_1, sin_azimuth_2
+        self.sin_azimuth_3, self.cos_azimuth_1, self.cos_azimuth_2 = sin_azimuth_3, cos_azimuth_1, cos_azimuth_2
+        self.cos_azimuth_3, self.assembly_sign = cos_azimuth_3, assembly_sign
+        self.sin_azimuth_1_times_tcp_radius_1 = sin_azimuth_1_times_tcp_radius_1
+        self.sin_azimuth_2_times_tcp_radius_2 = sin_azimuth_2_times_tcp_radius_2
+        self.sin_azimuth_3_times_tcp_radius_3 = sin_azimuth_3_times_tcp_radius_3
+        self.cos_azimuth_1_times_tcp_radius_1 = cos_azimuth_1_times_tcp_radius_1
+        self.cos_azimuth_2_times_tcp_radius_2 = cos_azimuth_2_times_tcp_radius_2
+        self.cos_azimuth_3_times_tcp_radius_3 = cos_azimuth_3_times_tcp_radius_3
+        self.part_of_normal_divisor, self.outer_arm_1_squared = part_of_normal_divisor, outer_arm_1_squared
+        self.outer_arm_1_squared_times_rounding = outer_arm_1_squared_times_rounding
+        self.inner_arm_1_times_sin_azimuth_1 = inner_arm_1_times_sin_azimuth_1
+        self.part_of_pivot_1_y = part_of_pivot_1_y
+        self.inner_arm_2_times_sin_azimuth_2 = inner_arm_2_times_sin_azimuth_2
+        self.part_of_pivot_2_y = part_of_pivot_2_y
+        self.inner_arm_3_times_sin_azimuth_3 = inner_arm_3_times_sin_azimuth_3
+        self.part_of_pivot_3_y = part_of_pivot_3_y
+        self.cos_azimuth_1_times_inner_arm_1 = cos_azimuth_1_times_inner_arm_1
+        self.part_of_pivot_1_x = part_of_pivot_1_x
+        self.cos_azimuth_2_times_inner_arm_2 = cos_azimuth_2_times_inner_arm_2
+        self.part_of_pivot_2_x = part_of_pivot_2_x
+        self.cos_azimuth_3_times_inner_arm_3 = cos_azimuth_3_times_inner_arm_3
+        self.part_of_pivot_3_x, self.part_of_projection_2 = part_of_pivot_3_x, part_of_projection_2
+        self.part_of_projection_3 = part_of_projection_3
+        self.inner_arm_1_times_shortest_link = inner_arm_1_times_shortest_link
+        self.inner_arm_2_times_shortest_link = inner_arm_2_times_shortest_link
+        self.inner_arm_3_times_shortest_link = inner_arm_3_times_shortest_link
+        self.part_of_type2_rods_coplanar = part_of_type2_rods_coplanar
+        self.part_of_margin_rods_coplanar = part_of_margin_rods_coplanar
+        self.part_of_determinant_divisor, self.twice_cos_azimuth_1 = part_of_determinant_divisor, twice_cos_azimuth_1
+        self.twice_sin_azimuth_1, self.twice_inner_arm_1 = twice_sin_azimuth_1, twice_inner_arm_1
+        self.twice_cos_azimuth_2, self.twice_sin_azimuth_2 = twice_cos_azimuth_2, twice_sin_azimuth_2
+        self.twice_inner_arm_2, self.twice_cos_azimuth_3 = twice_inner_arm_2, twice_cos_azimuth_3
+        self.twice_sin_azimuth_3, self.twice_inner_arm_3 = twice_sin_azimuth_3, twice_inner_arm_3
+        self.inner_arm_1_times_sin_azimuth_1_times_2 = inner_arm_1_times_sin_azimuth_1_times_2
+        self.cos_azimuth_1_times_inner_arm_1_times_2 = cos_azimuth_1_times_inner_arm_1_times_2
+        self.inner_arm_2_times_sin_azimuth_2_times_2 = inner_arm_2_times_sin_azimuth_2_times_2
+        self.cos_azimuth_2_times_inner_arm_2_times_2 = cos_azimuth_2_times_inner_arm_2_times_2
+        self.inner_arm_3_times_sin_azimuth_3_times_2 = inner_arm_3_times_sin_azimuth_3_times_2
+        self.cos_azimuth_3_times_inner_arm_3_times_2 = cos_azimuth_3_times_inner_arm_3_times_2
 
 
 class DeltaP3CType3(OffsetKinematics):
@@ -167,133 +248,62 @@ class DeltaP3CType3(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Delta_P3C_Type3"
     AXES = (
         Axis(
-            name="A1", kind="rotary", unit="deg", meaning="Arm 1, from horizontal outward; positive is down",
+            name="A1",
+            kind="rotary",
+            unit="deg",
+            meaning="Arm 1, from horizontal outward; positive is down",
             multi_turn=True,
         ),
         Axis(
-            name="A2", kind="rotary", unit="deg", meaning="Arm 2, from horizontal outward; positive is down",
+            name="A2",
+            kind="rotary",
+            unit="deg",
+            meaning="Arm 2, from horizontal outward; positive is down",
             multi_turn=True,
         ),
         Axis(
-            name="A3", kind="rotary", unit="deg", meaning="Arm 3, from horizontal outward; positive is down",
+            name="A3",
+            kind="rotary",
+            unit="deg",
+            meaning="Arm 3, from horizontal outward; positive is down",
             multi_turn=True,
         ),
     )
     PARAMETERS = (
-        Parameter(
-            name="azimuth_1", kind="angle", unit="deg", meaning="Direction of arm 1, from X", low=-360.0,
-            high=360.0, low_is_open=False, default=None,
+        Parameter.of("angle", "azimuth_1", "Direction of arm 1, from X", low=-360.0, high=360.0, default=None),
+        Parameter.of("angle", "azimuth_2", "Direction of arm 2, from X", low=-360.0, high=360.0, default=None),
+        Parameter.of("angle", "azimuth_3", "Direction of arm 3, from X", low=-360.0, high=360.0, default=None),
+        Parameter.of("length", "base_radius_1", "Origin to the motor axis of arm 1"),
+        Parameter.of("length", "base_radius_2", "Origin to the motor axis of arm 2"),
+        Parameter.of("length", "base_radius_3", "Origin to the motor axis of arm 3"),
+        Parameter.of("length", "inner_arm_1", "Inner arm 1"),
+        Parameter.of("length", "inner_arm_2", "Inner arm 2"),
+        Parameter.of("length", "inner_arm_3", "Inner arm 3"),
+        Parameter.of("length", "outer_arm_1", "Outer arm 1"),
+        Parameter.of("length", "outer_arm_2", "Outer arm 2"),
+        Parameter.of("length", "outer_arm_3", "Outer arm 3"),
+        Parameter.of("distance", "tcp_radius_1", "TCP to the rod joints of arm 1", low=0.0),
+        Parameter.of("distance", "tcp_radius_2", "TCP to the rod joints of arm 2", low=0.0),
+        Parameter.of("distance", "tcp_radius_3", "TCP to the rod joints of arm 3", low=0.0),
+        Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a3", "A3: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "tcp_above", "assembly mode: above instead of below"),
+        Parameter.of(
+            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
         ),
-        Parameter(
-            name="azimuth_2", kind="angle", unit="deg", meaning="Direction of arm 2, from X", low=-360.0,
-            high=360.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="azimuth_3", kind="angle", unit="deg", meaning="Direction of arm 3, from X", low=-360.0,
-            high=360.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_radius_1", kind="length", unit="u", meaning="Origin to the motor axis of arm 1", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="base_radius_2", kind="length", unit="u", meaning="Origin to the motor axis of arm 2", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="base_radius_3", kind="length", unit="u", meaning="Origin to the motor axis of arm 3", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="inner_arm_1", kind="length", unit="u", meaning="Inner arm 1", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="inner_arm_2", kind="length", unit="u", meaning="Inner arm 2", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="inner_arm_3", kind="length", unit="u", meaning="Inner arm 3", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="outer_arm_1", kind="length", unit="u", meaning="Outer arm 1", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="outer_arm_2", kind="length", unit="u", meaning="Outer arm 2", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="outer_arm_3", kind="length", unit="u", meaning="Outer arm 3", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="tcp_radius_1", kind="distance", unit="u", meaning="TCP to the rod joints of arm 1", low=0.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_radius_2", kind="distance", unit="u", meaning="TCP to the rod joints of arm 2", low=0.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_radius_3", kind="distance", unit="u", meaning="TCP to the rod joints of arm 3", low=0.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a1", kind="angle", unit="deg", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="angle", unit="deg", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a3", kind="angle", unit="deg", meaning="A3: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="angle", unit="deg", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="angle", unit="deg", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="angle", unit="deg", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="angle", unit="deg", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a3", kind="angle", unit="deg", meaning="A3: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a3", kind="angle", unit="deg", meaning="A3: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_above", kind="flag", unit="", meaning="assembly mode: above instead of below", low=0.0,
-            high=1.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
-            low_is_open=False, default=0.001,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="knee_1", kind="branch", branches=("outward", "inward"), default=1),
@@ -314,12 +324,34 @@ class DeltaP3CType3(OffsetKinematics):
     DISTANCE_AXES = (0, 1, 2)
 
     def __init__(
-        self, *, azimuth_1: float, azimuth_2: float, azimuth_3: float, base_radius_1: float, base_radius_2: float,
-        base_radius_3: float, inner_arm_1: float, inner_arm_2: float, inner_arm_3: float, outer_arm_1: float,
-        outer_arm_2: float, outer_arm_3: float, tcp_radius_1: float = 0.0, tcp_radius_2: float = 0.0,
-        tcp_radius_3: float = 0.0, offset_a1: float = 0.0, offset_a2: float = 0.0, offset_a3: float = 0.0,
-        lower_a1: float = 0.0, upper_a1: float = 0.0, lower_a2: float = 0.0, upper_a2: float = 0.0,
-        lower_a3: float = 0.0, upper_a3: float = 0.0, tcp_above: bool = False, min_type2_margin: float = 0.001,
+        self,
+        *,
+        azimuth_1: float,
+        azimuth_2: float,
+        azimuth_3: float,
+        base_radius_1: float,
+        base_radius_2: float,
+        base_radius_3: float,
+        inner_arm_1: float,
+        inner_arm_2: float,
+        inner_arm_3: float,
+        outer_arm_1: float,
+        outer_arm_2: float,
+        outer_arm_3: float,
+        tcp_radius_1: float = 0.0,
+        tcp_radius_2: float = 0.0,
+        tcp_radius_3: float = 0.0,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        offset_a3: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        lower_a3: float = 0.0,
+        upper_a3: float = 0.0,
+        tcp_above: bool = False,
+        min_type2_margin: float = 0.001,
         check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
@@ -352,400 +384,109 @@ class DeltaP3CType3(OffsetKinematics):
         min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            azimuth_1, azimuth_2, azimuth_3, base_radius_1, base_radius_2, base_radius_3, inner_arm_1, inner_arm_2,
-            inner_arm_3, outer_arm_1, outer_arm_2, outer_arm_3, tcp_radius_1, tcp_radius_2, tcp_radius_3, offset_a1,
-            offset_a2, offset_a3, lower_a1, upper_a1, lower_a2, upper_a2, lower_a3, upper_a3, tcp_above,
-            min_type2_margin, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, azimuth_1: float, azimuth_2: float, azimuth_3: float, base_radius_1: float, base_radius_2: float,
-        base_radius_3: float, inner_arm_1: float, inner_arm_2: float, inner_arm_3: float, outer_arm_1: float,
-        outer_arm_2: float, outer_arm_3: float, tcp_radius_1: float, tcp_radius_2: float, tcp_radius_3: float,
-        offset_a1: float, offset_a2: float, offset_a3: float, lower_a1: float, upper_a1: float, lower_a2: float,
-        upper_a2: float, lower_a3: float, upper_a3: float, tcp_above: bool, min_type2_margin: float,
-        check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (azimuth_1 >= -360.0 and azimuth_1 <= 360.0):
-            raise self._refusal("azimuth_1: Direction of arm 1, from X", azimuth_1=azimuth_1)
-        if not (azimuth_2 >= -360.0 and azimuth_2 <= 360.0):
-            raise self._refusal("azimuth_2: Direction of arm 2, from X", azimuth_2=azimuth_2)
-        if not (azimuth_3 >= -360.0 and azimuth_3 <= 360.0):
-            raise self._refusal("azimuth_3: Direction of arm 3, from X", azimuth_3=azimuth_3)
-        if not (base_radius_1 <= 1e9 and base_radius_1 > 0.0):
-            raise self._refusal("base_radius_1: Origin to the motor axis of arm 1", base_radius_1=base_radius_1)
-        if not (base_radius_2 <= 1e9 and base_radius_2 > 0.0):
-            raise self._refusal("base_radius_2: Origin to the motor axis of arm 2", base_radius_2=base_radius_2)
-        if not (base_radius_3 <= 1e9 and base_radius_3 > 0.0):
-            raise self._refusal("base_radius_3: Origin to the motor axis of arm 3", base_radius_3=base_radius_3)
-        if not (inner_arm_1 <= 1e9 and inner_arm_1 > 0.0):
-            raise self._refusal("inner_arm_1: Inner arm 1", inner_arm_1=inner_arm_1)
-        if not (inner_arm_2 <= 1e9 and inner_arm_2 > 0.0):
-            raise self._refusal("inner_arm_2: Inner arm 2", inner_arm_2=inner_arm_2)
-        if not (inner_arm_3 <= 1e9 and inner_arm_3 > 0.0):
-            raise self._refusal("inner_arm_3: Inner arm 3", inner_arm_3=inner_arm_3)
-        if not (outer_arm_1 <= 1e9 and outer_arm_1 > 0.0):
-            raise self._refusal("outer_arm_1: Outer arm 1", outer_arm_1=outer_arm_1)
-        if not (outer_arm_2 <= 1e9 and outer_arm_2 > 0.0):
-            raise self._refusal("outer_arm_2: Outer arm 2", outer_arm_2=outer_arm_2)
-        if not (outer_arm_3 <= 1e9 and outer_arm_3 > 0.0):
-            raise self._refusal("outer_arm_3: Outer arm 3", outer_arm_3=outer_arm_3)
-        if not (tcp_radius_1 >= 0.0 and tcp_radius_1 <= 1e9):
-            raise self._refusal("tcp_radius_1: TCP to the rod joints of arm 1", tcp_radius_1=tcp_radius_1)
-        if not (tcp_radius_2 >= 0.0 and tcp_radius_2 <= 1e9):
-            raise self._refusal("tcp_radius_2: TCP to the rod joints of arm 2", tcp_radius_2=tcp_radius_2)
-        if not (tcp_radius_3 >= 0.0 and tcp_radius_3 <= 1e9):
-            raise self._refusal("tcp_radius_3: TCP to the rod joints of arm 3", tcp_radius_3=tcp_radius_3)
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (offset_a3 >= -1e9 and offset_a3 <= 1e9):
-            raise self._refusal("offset_a3: A3: axis value at the kinematic zero position", offset_a3=offset_a3)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (lower_a3 >= -1e9 and lower_a3 <= 1e9):
-            raise self._refusal("lower_a3: A3: lower limit of the axis, both 0: no limit", lower_a3=lower_a3)
-        if not (upper_a3 >= -1e9 and upper_a3 <= 1e9):
-            raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
-        if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
-            raise self._refusal(
-                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
-                min_type2_margin=min_type2_margin,
-            )
-        if not (
-            abs(
-                cos(DEGREE*azimuth_2)*sin(DEGREE*azimuth_1) + cos(DEGREE*azimuth_3)*sin(DEGREE*azimuth_2)
-                + cos(DEGREE*azimuth_1)*sin(DEGREE*azimuth_3) - cos(DEGREE*azimuth_3)*sin(DEGREE*azimuth_1)
-                - cos(DEGREE*azimuth_1)*sin(DEGREE*azimuth_2) - cos(DEGREE*azimuth_2)*sin(DEGREE*azimuth_3)
-            ) > 1e-6
-        ):
-            raise self._refusal(
-                "the arms must not all point the same way", azimuth_1=azimuth_1, azimuth_2=azimuth_2,
-                azimuth_3=azimuth_3,
-            )
-        # what every arm reaches, seen from above: a disc
-        reach_x_1 = (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
-        reach_y_1 = (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
-        reach_1 = inner_arm_1 + outer_arm_1
-        reach_x_2 = (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
-        reach_y_2 = (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
-        reach_2 = inner_arm_2 + outer_arm_2
-        reach_x_3 = (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
-        reach_y_3 = (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
-        reach_3 = inner_arm_3 + outer_arm_3
-        side_12_x = reach_x_2 - reach_x_1
-        side_12_y = reach_y_2 - reach_y_1
-        side_13_x = reach_x_3 - reach_x_1
-        side_13_y = reach_y_3 - reach_y_1
-        side_23_x = reach_x_3 - reach_x_2
-        side_23_y = reach_y_3 - reach_y_2
-        if not (
-            side_12_x*side_12_x + side_12_y*side_12_y <= (reach_1 + reach_2)*(reach_1 + reach_2)
-            and side_13_x*side_13_x + side_13_y*side_13_y <= (reach_1 + reach_3)*(reach_1 + reach_3)
-            and side_23_x*side_23_x + side_23_y*side_23_y <= (reach_2 + reach_3)*(reach_2 + reach_3)
-        ):
-            raise self._refusal("arms long enough to reach the plate")
-        corner_area = side_12_x*side_13_y - side_12_y*side_13_x
-        power_2 = reach_1*reach_1 + side_12_x*side_12_x + side_12_y*side_12_y - reach_2*reach_2
-        power_3 = reach_1*reach_1 + side_13_x*side_13_x + side_13_y*side_13_y - reach_3*reach_3
-        equal_power_x = power_2*side_13_y - power_3*side_12_y
-        equal_power_y = power_3*side_12_x - power_2*side_13_x
-        weight_2 = equal_power_x*side_13_y - equal_power_y*side_13_x
-        weight_3 = equal_power_y*side_12_x - equal_power_x*side_12_y
-        if not (
-            (weight_2 < 0.0) or (weight_3 < 0.0) or (weight_2 + weight_3 > 2.0*corner_area*corner_area)
-            or (
-                equal_power_x*equal_power_x
-                + equal_power_y*equal_power_y <= 4.0*corner_area*corner_area*reach_1*reach_1
-            )
-        ):
-            raise self._refusal("arms long enough to reach the plate")
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # at most one turn is inside the limits
-        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-        mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # at most one turn is inside the limits
-        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-        mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
-        if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
-            raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
-        effective_lower_a3 = lower_a3
-        effective_upper_a3 = upper_a3
-        tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # at most one turn is inside the limits
-        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-        mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
-        # characteristic length of the machine
-        machine_scale = (
-            base_radius_1 + base_radius_2 + base_radius_3 + inner_arm_1 + inner_arm_2 + inner_arm_3 + outer_arm_1
-            + outer_arm_2 + outer_arm_3 + tcp_radius_1 + tcp_radius_2 + tcp_radius_3
-        )
-        sin_azimuth_1 = sin(DEGREE*azimuth_1)
-        sin_azimuth_2 = sin(DEGREE*azimuth_2)
-        sin_azimuth_3 = sin(DEGREE*azimuth_3)
-        cos_azimuth_1 = cos(DEGREE*azimuth_1)
-        cos_azimuth_2 = cos(DEGREE*azimuth_2)
-        cos_azimuth_3 = cos(DEGREE*azimuth_3)
-        # assembly mode of this machine: the sign of the determinant of its rods
-        assembly_sign = (
-            (1.0 if tcp_above else -1.0)
-            if cos_azimuth_1*sin_azimuth_2 + cos_azimuth_2*sin_azimuth_3 + cos_azimuth_3*sin_azimuth_1 - cos_azimuth_1*sin_azimuth_3 - cos_azimuth_2*sin_azimuth_1 - cos_azimuth_3*sin_azimuth_2 > 0.0
-            else (-1.0 if tcp_above else 1.0)
-        )
-        sin_azimuth_1_times_tcp_radius_1 = tcp_radius_1*sin_azimuth_1
-        sin_azimuth_2_times_tcp_radius_2 = tcp_radius_2*sin_azimuth_2
-        sin_azimuth_3_times_tcp_radius_3 = tcp_radius_3*sin_azimuth_3
-        cos_azimuth_1_times_tcp_radius_1 = tcp_radius_1*cos_azimuth_1
-        cos_azimuth_2_times_tcp_radius_2 = tcp_radius_2*cos_azimuth_2
-        cos_azimuth_3_times_tcp_radius_3 = tcp_radius_3*cos_azimuth_3
-        part_of_normal_divisor = 1e-22*outer_arm_1*outer_arm_1*outer_arm_1*outer_arm_1
-        outer_arm_1_squared = outer_arm_1*outer_arm_1
-        outer_arm_1_squared_times_rounding = 1e-12*outer_arm_1*outer_arm_1
-        inner_arm_1_times_sin_azimuth_1 = inner_arm_1*sin_azimuth_1
-        part_of_pivot_1_y = base_radius_1*sin_azimuth_1 - sin_azimuth_1_times_tcp_radius_1
-        inner_arm_2_times_sin_azimuth_2 = inner_arm_2*sin_azimuth_2
-        part_of_pivot_2_y = base_radius_2*sin_azimuth_2 - sin_azimuth_2_times_tcp_radius_2
-        inner_arm_3_times_sin_azimuth_3 = inner_arm_3*sin_azimuth_3
-        part_of_pivot_3_y = base_radius_3*sin_azimuth_3 - sin_azimuth_3_times_tcp_radius_3
-        cos_azimuth_1_times_inner_arm_1 = inner_arm_1*cos_azimuth_1
-        part_of_pivot_1_x = base_radius_1*cos_azimuth_1 - cos_azimuth_1_times_tcp_radius_1
-        cos_azimuth_2_times_inner_arm_2 = inner_arm_2*cos_azimuth_2
-        part_of_pivot_2_x = base_radius_2*cos_azimuth_2 - cos_azimuth_2_times_tcp_radius_2
-        cos_azimuth_3_times_inner_arm_3 = inner_arm_3*cos_azimuth_3
-        part_of_pivot_3_x = base_radius_3*cos_azimuth_3 - cos_azimuth_3_times_tcp_radius_3
-        outer_arm_1_squared_times_half = 0.5*outer_arm_1*outer_arm_1
-        part_of_projection_2 = outer_arm_1_squared_times_half - 0.5*outer_arm_2*outer_arm_2
-        part_of_projection_3 = outer_arm_1_squared_times_half - 0.5*outer_arm_3*outer_arm_3
-        inner_arm_1_times_shortest_link = 1e-9*inner_arm_1
-        inner_arm_2_times_shortest_link = 1e-9*inner_arm_2
-        inner_arm_3_times_shortest_link = 1e-9*inner_arm_3
-        part_of_type2_rods_coplanar = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
-        part_of_margin_rods_coplanar = outer_arm_1*outer_arm_2*outer_arm_3
-        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
-        twice_cos_azimuth_1 = 2.0*cos_azimuth_1
-        twice_sin_azimuth_1 = 2.0*sin_azimuth_1
-        twice_inner_arm_1 = 2.0*inner_arm_1
-        twice_cos_azimuth_2 = 2.0*cos_azimuth_2
-        twice_sin_azimuth_2 = 2.0*sin_azimuth_2
-        twice_inner_arm_2 = 2.0*inner_arm_2
-        twice_cos_azimuth_3 = 2.0*cos_azimuth_3
-        twice_sin_azimuth_3 = 2.0*sin_azimuth_3
-        twice_inner_arm_3 = 2.0*inner_arm_3
-        inner_arm_1_times_sin_azimuth_1_times_2 = 2.0*inner_arm_1*sin_azimuth_1
-        cos_azimuth_1_times_inner_arm_1_times_2 = 2.0*inner_arm_1*cos_azimuth_1
-        inner_arm_2_times_sin_azimuth_2_times_2 = 2.0*inner_arm_2*sin_azimuth_2
-        cos_azimuth_2_times_inner_arm_2_times_2 = 2.0*inner_arm_2*cos_azimuth_2
-        inner_arm_3_times_sin_azimuth_3_times_2 = 2.0*inner_arm_3*sin_azimuth_3
-        cos_azimuth_3_times_inner_arm_3_times_2 = 2.0*inner_arm_3*cos_azimuth_3
-        return Constants(
-            azimuth_1=azimuth_1, azimuth_2=azimuth_2, azimuth_3=azimuth_3, base_radius_1=base_radius_1,
-            base_radius_2=base_radius_2, base_radius_3=base_radius_3, inner_arm_1=inner_arm_1,
-            inner_arm_2=inner_arm_2, inner_arm_3=inner_arm_3, outer_arm_1=outer_arm_1, outer_arm_2=outer_arm_2,
-            outer_arm_3=outer_arm_3, tcp_radius_1=tcp_radius_1, tcp_radius_2=tcp_radius_2, tcp_radius_3=tcp_radius_3,
-            offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3, tcp_above=tcp_above,
-            min_type2_margin=min_type2_margin, check_limits=check_limits, lower_a1=effective_lower_a1,
-            upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1, highest_a1=highest_a1,
-            single_a1=single_a1, mid_a1=mid_a1, lower_a2=effective_lower_a2, upper_a2=effective_upper_a2,
-            unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2,
-            lower_a3=effective_lower_a3, upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3,
-            highest_a3=highest_a3, single_a3=single_a3, mid_a3=mid_a3, machine_scale=machine_scale,
-            sin_azimuth_1=sin_azimuth_1, sin_azimuth_2=sin_azimuth_2, sin_azimuth_3=sin_azimuth_3,
-            cos_azimuth_1=cos_azimuth_1, cos_azimuth_2=cos_azimuth_2, cos_azimuth_3=cos_azimuth_3,
-            assembly_sign=assembly_sign, sin_azimuth_1_times_tcp_radius_1=sin_azimuth_1_times_tcp_radius_1,
-            sin_azimuth_2_times_tcp_radius_2=sin_azimuth_2_times_tcp_radius_2,
-            sin_azimuth_3_times_tcp_radius_3=sin_azimuth_3_times_tcp_radius_3,
-            cos_azimuth_1_times_tcp_radius_1=cos_azimuth_1_times_tcp_radius_1,
-            cos_azimuth_2_times_tcp_radius_2=cos_azimuth_2_times_tcp_radius_2,
-            cos_azimuth_3_times_tcp_radius_3=cos_azimuth_3_times_tcp_radius_3,
-            part_of_normal_divisor=part_of_normal_divisor, outer_arm_1_squared=outer_arm_1_squared,
-            outer_arm_1_squared_times_rounding=outer_arm_1_squared_times_rounding,
-            inner_arm_1_times_sin_azimuth_1=inner_arm_1_times_sin_azimuth_1, part_of_pivot_1_y=part_of_pivot_1_y,
-            inner_arm_2_times_sin_azimuth_2=inner_arm_2_times_sin_azimuth_2, part_of_pivot_2_y=part_of_pivot_2_y,
-            inner_arm_3_times_sin_azimuth_3=inner_arm_3_times_sin_azimuth_3, part_of_pivot_3_y=part_of_pivot_3_y,
-            cos_azimuth_1_times_inner_arm_1=cos_azimuth_1_times_inner_arm_1, part_of_pivot_1_x=part_of_pivot_1_x,
-            cos_azimuth_2_times_inner_arm_2=cos_azimuth_2_times_inner_arm_2, part_of_pivot_2_x=part_of_pivot_2_x,
-            cos_azimuth_3_times_inner_arm_3=cos_azimuth_3_times_inner_arm_3, part_of_pivot_3_x=part_of_pivot_3_x,
-            part_of_projection_2=part_of_projection_2, part_of_projection_3=part_of_projection_3,
-            inner_arm_1_times_shortest_link=inner_arm_1_times_shortest_link,
-            inner_arm_2_times_shortest_link=inner_arm_2_times_shortest_link,
-            inner_arm_3_times_shortest_link=inner_arm_3_times_shortest_link,
-            part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
-            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
-            part_of_determinant_divisor=part_of_determinant_divisor, twice_cos_azimuth_1=twice_cos_azimuth_1,
-            twice_sin_azimuth_1=twice_sin_azimuth_1, twice_inner_arm_1=twice_inner_arm_1,
-            twice_cos_azimuth_2=twice_cos_azimuth_2, twice_sin_azimuth_2=twice_sin_azimuth_2,
-            twice_inner_arm_2=twice_inner_arm_2, twice_cos_azimuth_3=twice_cos_azimuth_3,
-            twice_sin_azimuth_3=twice_sin_azimuth_3, twice_inner_arm_3=twice_inner_arm_3,
-            inner_arm_1_times_sin_azimuth_1_times_2=inner_arm_1_times_sin_azimuth_1_times_2,
-            cos_azimuth_1_times_inner_arm_1_times_2=cos_azimuth_1_times_inner_arm_1_times_2,
-            inner_arm_2_times_sin_azimuth_2_times_2=inner_arm_2_times_sin_azimuth_2_times_2,
-            cos_azimuth_2_times_inner_arm_2_times_2=cos_azimuth_2_times_inner_arm_2_times_2,
-            inner_arm_3_times_sin_azimuth_3_times_2=inner_arm_3_times_sin_azimuth_3_times_2,
-            cos_azimuth_3_times_inner_arm_3_times_2=cos_azimuth_3_times_inner_arm_3_times_2,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        cos_azimuth_1 = k.cos_azimuth_1
-        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
-        cos_azimuth_2 = k.cos_azimuth_2
-        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
-        cos_azimuth_3 = k.cos_azimuth_3
-        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
-        inner_arm_1 = k.inner_arm_1
-        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
-        inner_arm_2 = k.inner_arm_2
-        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
-        inner_arm_3 = k.inner_arm_3
-        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        outer_arm_1 = k.outer_arm_1
+        assembly_sign, cos_azimuth_1 = k.assembly_sign, k.cos_azimuth_1
+        cos_azimuth_1_times_inner_arm_1, cos_azimuth_2 = k.cos_azimuth_1_times_inner_arm_1, k.cos_azimuth_2
+        cos_azimuth_2_times_inner_arm_2, cos_azimuth_3 = k.cos_azimuth_2_times_inner_arm_2, k.cos_azimuth_3
+        cos_azimuth_3_times_inner_arm_3, inner_arm_1 = k.cos_azimuth_3_times_inner_arm_3, k.inner_arm_1
+        inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
+        inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
+        inner_arm_3_times_sin_azimuth_3, offset_a1 = k.inner_arm_3_times_sin_azimuth_3, k.offset_a1
+        offset_a2, offset_a3, outer_arm_1 = k.offset_a2, k.offset_a3, k.outer_arm_1
         outer_arm_1_squared = k.outer_arm_1_squared
-        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
-        outer_arm_2 = k.outer_arm_2
-        outer_arm_3 = k.outer_arm_3
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_1_x = k.part_of_pivot_1_x
-        part_of_pivot_1_y = k.part_of_pivot_1_y
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_3_x = k.part_of_pivot_3_x
-        part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_projection_2 = k.part_of_projection_2
-        part_of_projection_3 = k.part_of_projection_3
-        sin_azimuth_1 = k.sin_azimuth_1
-        sin_azimuth_2 = k.sin_azimuth_2
-        sin_azimuth_3 = k.sin_azimuth_3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        outer_arm_1_squared_times_rounding, outer_arm_2 = k.outer_arm_1_squared_times_rounding, k.outer_arm_2
+        outer_arm_3, part_of_normal_divisor = k.outer_arm_3, k.part_of_normal_divisor
+        part_of_pivot_1_x, part_of_pivot_1_y = k.part_of_pivot_1_x, k.part_of_pivot_1_y
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        part_of_pivot_3_x, part_of_pivot_3_y = k.part_of_pivot_3_x, k.part_of_pivot_3_y
+        part_of_projection_2, part_of_projection_3 = k.part_of_projection_2, k.part_of_projection_3
+        sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1*sin_a1
+        pivot_1_z = -inner_arm_1 * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2*sin_a2
+        pivot_2_z = -inner_arm_2 * sin_a2
         centre_1_to_2_z = pivot_2_z - pivot_1_z
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
         centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3*sin_a3
+        pivot_3_z = -inner_arm_3 * sin_a3
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         # normal to the plane of the centres
-        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2: centre about which it swings
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        # rod 1: centre about which it swings
+        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
+        # rod 2: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3: centre about which it swings
+        # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = (
-            part_of_projection_2
-            + 0.5*(
-                centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y + centre_1_to_2_z*centre_1_to_2_z
-            )
+        projection_2 = part_of_projection_2 + 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
         )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = (
-            part_of_projection_3
-            + 0.5*(
-                centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_y*centre_1_to_3_y + centre_1_to_3_z*centre_1_to_3_z
-            )
+        projection_3 = part_of_projection_3 + 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
         )
-        one_by_normal_square = 1.0/normal_square
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_y*normal_z - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - centre_1_to_2_y*normal_z)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y * normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y * normal_z) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
-                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = outer_arm_1_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
-        y = foot_y + pivot_1_y + height_by_normal*normal_y
-        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        y = foot_y + pivot_1_y + height_by_normal * normal_y
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
         span_1_y = y - part_of_pivot_1_y
-        branch_knee_1 = ((-span_1_x*cos_azimuth_1 - span_1_y*sin_azimuth_1)*sin_a1 - z*cos_a1)/outer_arm_1
+        branch_knee_1 = ((-span_1_x * cos_azimuth_1 - span_1_y * sin_azimuth_1) * sin_a1 - z * cos_a1) / outer_arm_1
         span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - part_of_pivot_2_y
-        branch_knee_2 = ((-span_2_x*cos_azimuth_2 - span_2_y*sin_azimuth_2)*sin_a2 - z*cos_a2)/outer_arm_2
+        branch_knee_2 = ((-span_2_x * cos_azimuth_2 - span_2_y * sin_azimuth_2) * sin_a2 - z * cos_a2) / outer_arm_2
         span_3_x = x - part_of_pivot_3_x  # rod 3: known part of its vector
         span_3_y = y - part_of_pivot_3_y
-        branch_knee_3 = ((-span_3_x*cos_azimuth_3 - span_3_y*sin_azimuth_3)*sin_a3 - z*cos_a3)/outer_arm_3
+        branch_knee_3 = ((-span_3_x * cos_azimuth_3 - span_3_y * sin_azimuth_3) * sin_a3 - z * cos_a3) / outer_arm_3
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -758,108 +499,86 @@ class DeltaP3CType3(OffsetKinematics):
         k = self._constants
         cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
         cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
-        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
-        inner_arm_1 = k.inner_arm_1
-        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
-        inner_arm_2 = k.inner_arm_2
-        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
-        inner_arm_3 = k.inner_arm_3
-        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        outer_arm_1_squared = k.outer_arm_1_squared
+        cos_azimuth_3_times_inner_arm_3, inner_arm_1 = k.cos_azimuth_3_times_inner_arm_3, k.inner_arm_1
+        inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
+        inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
+        inner_arm_3_times_sin_azimuth_3, offset_a1 = k.inner_arm_3_times_sin_azimuth_3, k.offset_a1
+        offset_a2, offset_a3, outer_arm_1_squared = k.offset_a2, k.offset_a3, k.outer_arm_1_squared
         outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_1_x = k.part_of_pivot_1_x
-        part_of_pivot_1_y = k.part_of_pivot_1_y
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_3_x = k.part_of_pivot_3_x
-        part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_projection_2 = k.part_of_projection_2
+        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
+        part_of_pivot_1_y, part_of_pivot_2_x = k.part_of_pivot_1_y, k.part_of_pivot_2_x
+        part_of_pivot_2_y, part_of_pivot_3_x = k.part_of_pivot_2_y, k.part_of_pivot_3_x
+        part_of_pivot_3_y, part_of_projection_2 = k.part_of_pivot_3_y, k.part_of_projection_2
         part_of_projection_3 = k.part_of_projection_3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1*sin_a1
+        pivot_1_z = -inner_arm_1 * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2*sin_a2
+        pivot_2_z = -inner_arm_2 * sin_a2
         centre_1_to_2_z = pivot_2_z - pivot_1_z
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
         centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3*sin_a3
+        pivot_3_z = -inner_arm_3 * sin_a3
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         # normal to the plane of the centres
-        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2: centre about which it swings
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        # rod 1: centre about which it swings
+        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
+        # rod 2: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3: centre about which it swings
+        # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = (
-            part_of_projection_2
-            + 0.5*(
-                centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y + centre_1_to_2_z*centre_1_to_2_z
-            )
+        projection_2 = part_of_projection_2 + 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
         )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = (
-            part_of_projection_3
-            + 0.5*(
-                centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_y*centre_1_to_3_y + centre_1_to_3_z*centre_1_to_3_z
-            )
+        projection_3 = part_of_projection_3 + 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
         )
-        one_by_normal_square = 1.0/normal_square
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_y*normal_z - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - centre_1_to_2_y*normal_z)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y * normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y * normal_z) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
-                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = outer_arm_1_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -867,81 +586,58 @@ class DeltaP3CType3(OffsetKinematics):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        cos_azimuth_1 = k.cos_azimuth_1
-        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
-        cos_azimuth_2 = k.cos_azimuth_2
-        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
-        cos_azimuth_3 = k.cos_azimuth_3
-        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
-        inner_arm_1 = k.inner_arm_1
-        inner_arm_1_times_shortest_link = k.inner_arm_1_times_shortest_link
-        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
-        inner_arm_2 = k.inner_arm_2
+        cos_azimuth_1, cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1, k.cos_azimuth_1_times_inner_arm_1
+        cos_azimuth_2, cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2, k.cos_azimuth_2_times_inner_arm_2
+        cos_azimuth_3, cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3, k.cos_azimuth_3_times_inner_arm_3
+        inner_arm_1, inner_arm_1_times_shortest_link = k.inner_arm_1, k.inner_arm_1_times_shortest_link
+        inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
         inner_arm_2_times_shortest_link = k.inner_arm_2_times_shortest_link
-        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
-        inner_arm_3 = k.inner_arm_3
+        inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
         inner_arm_3_times_shortest_link = k.inner_arm_3_times_shortest_link
-        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        outer_arm_1 = k.outer_arm_1
-        outer_arm_1_squared = k.outer_arm_1_squared
-        outer_arm_2 = k.outer_arm_2
-        outer_arm_3 = k.outer_arm_3
-        part_of_pivot_1_x = k.part_of_pivot_1_x
-        part_of_pivot_1_y = k.part_of_pivot_1_y
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_3_x = k.part_of_pivot_3_x
-        part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
-        sin_azimuth_1 = k.sin_azimuth_1
-        sin_azimuth_2 = k.sin_azimuth_2
-        sin_azimuth_3 = k.sin_azimuth_3
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
-            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
-        ):
+        inner_arm_3_times_sin_azimuth_3, mid_a1, mid_a2 = k.inner_arm_3_times_sin_azimuth_3, k.mid_a1, k.mid_a2
+        mid_a3, min_type2_margin, offset_a1, offset_a2 = k.mid_a3, k.min_type2_margin, k.offset_a1, k.offset_a2
+        offset_a3, outer_arm_1, outer_arm_1_squared = k.offset_a3, k.outer_arm_1, k.outer_arm_1_squared
+        outer_arm_2, outer_arm_3, part_of_pivot_1_x = k.outer_arm_2, k.outer_arm_3, k.part_of_pivot_1_x
+        part_of_pivot_1_y, part_of_pivot_2_x = k.part_of_pivot_1_y, k.part_of_pivot_2_x
+        part_of_pivot_2_y, part_of_pivot_3_x = k.part_of_pivot_2_y, k.part_of_pivot_3_x
+        part_of_pivot_3_y, part_of_type2_rods_coplanar = k.part_of_pivot_3_y, k.part_of_type2_rods_coplanar
+        sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
+        single_a1, single_a2, single_a3 = k.single_a1, k.single_a2, k.single_a3
+        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
         span_1_y = y - part_of_pivot_1_y
-        along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
-        z_squared = z*z
-        effective_a1 = root(z_squared + along_a1*along_a1)  # effective length of the arm that a1 turns
+        along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
+        z_squared = z * z
+        effective_a1 = root(z_squared + along_a1 * along_a1)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
+        part_of_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
         # square of the third side of the triangle
-        third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
+        third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
         # law of cosines for a1: rod 1: 1 - cosine, times a scale
-        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
+        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
+        one_plus_cos_a1 = effective_a1_plus_inner_arm_1 * effective_a1_plus_inner_arm_1 - third_square_a1
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
                 outer_arm_1
                 - root(
                     outer_arm_1_squared
-                    + 0.5*(
-                        abs(one_less_cos_a1) + effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
-                        + effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - abs(one_plus_cos_a1)
+                    + 0.5
+                    * (
+                        abs(one_less_cos_a1)
+                        + effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
+                        + effective_a1_plus_inner_arm_1 * effective_a1_plus_inner_arm_1
+                        - abs(one_plus_cos_a1)
                     )
                     - third_square_a1
                 )
@@ -949,123 +645,129 @@ class DeltaP3CType3(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - part_of_pivot_2_y
-        along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = root(z_squared + along_a2*along_a2)  # effective length of the arm that a2 turns
+        along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
+        effective_a2 = root(z_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
+        part_of_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
         # square of the third side of the triangle
-        third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
+        third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
         # law of cosines for a2: rod 2: 1 - cosine, times a scale
-        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
+        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
+        one_plus_cos_a2 = effective_a2_plus_inner_arm_2 * effective_a2_plus_inner_arm_2 - third_square_a2
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
                 outer_arm_2
                 - root(
-                    0.5*(
-                        abs(one_less_cos_a2) + effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
-                        + effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - abs(one_plus_cos_a2)
+                    0.5
+                    * (
+                        abs(one_less_cos_a2)
+                        + effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
+                        + effective_a2_plus_inner_arm_2 * effective_a2_plus_inner_arm_2
+                        - abs(one_plus_cos_a2)
                     )
-                    + outer_arm_2*outer_arm_2 - third_square_a2
+                    + outer_arm_2 * outer_arm_2
+                    - third_square_a2
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_x = x - part_of_pivot_3_x  # rod 3: known part of its vector
         span_3_y = y - part_of_pivot_3_y
-        along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = root(z_squared + along_a3*along_a3)  # effective length of the arm that a3 turns
+        along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
+        effective_a3 = root(z_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
+        part_of_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
         # square of the third side of the triangle
-        third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
+        third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
         # law of cosines for a3: rod 3: 1 - cosine, times a scale
-        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
+        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
+        one_plus_cos_a3 = effective_a3_plus_inner_arm_3 * effective_a3_plus_inner_arm_3 - third_square_a3
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
         divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
                 outer_arm_3
                 - root(
-                    0.5*(
-                        abs(one_less_cos_a3) + effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
-                        + effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - abs(one_plus_cos_a3)
+                    0.5
+                    * (
+                        abs(one_less_cos_a3)
+                        + effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
+                        + effective_a3_plus_inner_arm_3 * effective_a3_plus_inner_arm_3
+                        - abs(one_plus_cos_a3)
                     )
-                    + outer_arm_3*outer_arm_3 - third_square_a3
+                    + outer_arm_3 * outer_arm_3
+                    - third_square_a3
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a1 = (along_a1*cos_swing_a1 + z*sin_swing_a1)/effective_a1
-        rod_1_x = span_1_x - cos_a1*cos_azimuth_1_times_inner_arm_1
-        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1
-        sin_a1 = (along_a1*sin_swing_a1 - z*cos_swing_a1)/effective_a1
-        pivot_1_z = -inner_arm_1*sin_a1
+        cos_a1 = (along_a1 * cos_swing_a1 + z * sin_swing_a1) / effective_a1
+        rod_1_x = span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1
+        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1 * cos_a1
+        sin_a1 = (along_a1 * sin_swing_a1 - z * cos_swing_a1) / effective_a1
+        pivot_1_z = -inner_arm_1 * sin_a1
         rod_1_z = z - pivot_1_z
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (along_a2*cos_swing_a2 + z*sin_swing_a2)/effective_a2
-        rod_2_x = span_2_x - cos_a2*cos_azimuth_2_times_inner_arm_2
-        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2
-        sin_a2 = (along_a2*sin_swing_a2 - z*cos_swing_a2)/effective_a2
-        pivot_2_z = -inner_arm_2*sin_a2
+        cos_a2 = (along_a2 * cos_swing_a2 + z * sin_swing_a2) / effective_a2
+        rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2
+        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2 * cos_a2
+        sin_a2 = (along_a2 * sin_swing_a2 - z * cos_swing_a2) / effective_a2
+        pivot_2_z = -inner_arm_2 * sin_a2
         rod_2_z = z - pivot_2_z
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
-        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a3 = (along_a3*cos_swing_a3 + z*sin_swing_a3)/effective_a3
-        rod_3_x = span_3_x - cos_a3*cos_azimuth_3_times_inner_arm_3
-        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3
-        sin_a3 = (along_a3*sin_swing_a3 - z*cos_swing_a3)/effective_a3
-        pivot_3_z = -inner_arm_3*sin_a3
+        cos_a3 = (along_a3 * cos_swing_a3 + z * sin_swing_a3) / effective_a3
+        rod_3_x = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3
+        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3 * cos_a3
+        sin_a3 = (along_a3 * sin_swing_a3 - z * cos_swing_a3) / effective_a3
+        pivot_3_z = -inner_arm_3 * sin_a3
         rod_3_z = z - pivot_3_z
-        type2_rods_coplanar = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
-                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-            )
+        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
-        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: whole turns added
+        near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -1074,176 +776,122 @@ class DeltaP3CType3(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
-        # limits of A3
-        if not (axis_a3 >= lowest_a3):
-            missing = lowest_a3 - axis_a3
-            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
-                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
-        if not (axis_a3 <= highest_a3):
-            missing = axis_a3 - highest_a3
-            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
-                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
+        highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
+        lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond_turn("A1", axis_a1, lowest_a1, highest_a1)
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
+        if not lowest_a3 <= axis_a3 <= highest_a3:
+            return beyond_turn("A3", axis_a3, lowest_a3, highest_a3)
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        cos_azimuth_1 = k.cos_azimuth_1
-        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
-        cos_azimuth_2 = k.cos_azimuth_2
-        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
-        cos_azimuth_3 = k.cos_azimuth_3
-        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
-        inner_arm_1 = k.inner_arm_1
-        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
-        inner_arm_2 = k.inner_arm_2
-        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
-        inner_arm_3 = k.inner_arm_3
-        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        outer_arm_1 = k.outer_arm_1
+        assembly_sign, cos_azimuth_1 = k.assembly_sign, k.cos_azimuth_1
+        cos_azimuth_1_times_inner_arm_1, cos_azimuth_2 = k.cos_azimuth_1_times_inner_arm_1, k.cos_azimuth_2
+        cos_azimuth_2_times_inner_arm_2, cos_azimuth_3 = k.cos_azimuth_2_times_inner_arm_2, k.cos_azimuth_3
+        cos_azimuth_3_times_inner_arm_3, inner_arm_1 = k.cos_azimuth_3_times_inner_arm_3, k.inner_arm_1
+        inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
+        inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
+        inner_arm_3_times_sin_azimuth_3, offset_a1 = k.inner_arm_3_times_sin_azimuth_3, k.offset_a1
+        offset_a2, offset_a3, outer_arm_1 = k.offset_a2, k.offset_a3, k.outer_arm_1
         outer_arm_1_squared = k.outer_arm_1_squared
-        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
-        outer_arm_2 = k.outer_arm_2
-        outer_arm_3 = k.outer_arm_3
-        part_of_margin_rods_coplanar = k.part_of_margin_rods_coplanar
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_1_x = k.part_of_pivot_1_x
-        part_of_pivot_1_y = k.part_of_pivot_1_y
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_3_x = k.part_of_pivot_3_x
-        part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_projection_2 = k.part_of_projection_2
-        part_of_projection_3 = k.part_of_projection_3
-        sin_azimuth_1 = k.sin_azimuth_1
-        sin_azimuth_2 = k.sin_azimuth_2
+        outer_arm_1_squared_times_rounding, outer_arm_2 = k.outer_arm_1_squared_times_rounding, k.outer_arm_2
+        outer_arm_3, part_of_margin_rods_coplanar = k.outer_arm_3, k.part_of_margin_rods_coplanar
+        part_of_normal_divisor, part_of_pivot_1_x = k.part_of_normal_divisor, k.part_of_pivot_1_x
+        part_of_pivot_1_y, part_of_pivot_2_x = k.part_of_pivot_1_y, k.part_of_pivot_2_x
+        part_of_pivot_2_y, part_of_pivot_3_x = k.part_of_pivot_2_y, k.part_of_pivot_3_x
+        part_of_pivot_3_y, part_of_projection_2 = k.part_of_pivot_3_y, k.part_of_projection_2
+        part_of_projection_3, sin_azimuth_1, sin_azimuth_2 = k.part_of_projection_3, k.sin_azimuth_1, k.sin_azimuth_2
         sin_azimuth_3 = k.sin_azimuth_3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1*sin_a1
+        pivot_1_z = -inner_arm_1 * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2*sin_a2
+        pivot_2_z = -inner_arm_2 * sin_a2
         centre_1_to_2_z = pivot_2_z - pivot_1_z
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
         centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3*sin_a3
+        pivot_3_z = -inner_arm_3 * sin_a3
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         # normal to the plane of the centres
-        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2: centre about which it swings
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        # rod 1: centre about which it swings
+        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
+        # rod 2: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3: centre about which it swings
+        # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = (
-            part_of_projection_2
-            + 0.5*(
-                centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y + centre_1_to_2_z*centre_1_to_2_z
-            )
+        projection_2 = part_of_projection_2 + 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
         )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = (
-            part_of_projection_3
-            + 0.5*(
-                centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_y*centre_1_to_3_y + centre_1_to_3_z*centre_1_to_3_z
-            )
+        projection_3 = part_of_projection_3 + 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
         )
-        one_by_normal_square = 1.0/normal_square
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_y*normal_z - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - centre_1_to_2_y*normal_z)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y * normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y * normal_z) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
-                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = outer_arm_1_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        z = foot_z + pivot_1_z + height_by_normal*normal_z
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = x - part_of_pivot_1_x  # rod 1: known part of its vector
-        y = foot_y + pivot_1_y + height_by_normal*normal_y
+        y = foot_y + pivot_1_y + height_by_normal * normal_y
         span_1_y = y - part_of_pivot_1_y
-        margin_stretched_1 = ((-span_1_x*cos_azimuth_1 - span_1_y*sin_azimuth_1)*sin_a1 - z*cos_a1)/outer_arm_1
+        margin_stretched_1 = (
+            (-span_1_x * cos_azimuth_1 - span_1_y * sin_azimuth_1) * sin_a1 - z * cos_a1
+        ) / outer_arm_1
         span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - part_of_pivot_2_y
-        margin_stretched_2 = ((-span_2_x*cos_azimuth_2 - span_2_y*sin_azimuth_2)*sin_a2 - z*cos_a2)/outer_arm_2
+        margin_stretched_2 = (
+            (-span_2_x * cos_azimuth_2 - span_2_y * sin_azimuth_2) * sin_a2 - z * cos_a2
+        ) / outer_arm_2
         span_3_x = x - part_of_pivot_3_x  # rod 3: known part of its vector
         span_3_y = y - part_of_pivot_3_y
-        margin_stretched_3 = ((-span_3_x*cos_azimuth_3 - span_3_y*sin_azimuth_3)*sin_a3 - z*cos_a3)/outer_arm_3
+        margin_stretched_3 = (
+            (-span_3_x * cos_azimuth_3 - span_3_y * sin_azimuth_3) * sin_a3 - z * cos_a3
+        ) / outer_arm_3
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         rod_1_z = z - pivot_1_z
@@ -1254,224 +902,178 @@ class DeltaP3CType3(OffsetKinematics):
         rod_3_y = y - pivot_3_y
         rod_3_z = z - pivot_3_z
         margin_rods_coplanar = (
-            (
-                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
-                + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
-            )
-            /part_of_margin_rods_coplanar
-        )
+            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * rod_1_y
+            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+        ) / part_of_margin_rods_coplanar
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        base_radius_1 = k.base_radius_1
-        base_radius_2 = k.base_radius_2
-        base_radius_3 = k.base_radius_3
-        cos_azimuth_1 = k.cos_azimuth_1
+        assembly_sign, base_radius_1, base_radius_2 = k.assembly_sign, k.base_radius_1, k.base_radius_2
+        base_radius_3, cos_azimuth_1 = k.base_radius_3, k.cos_azimuth_1
         cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
         cos_azimuth_1_times_inner_arm_1_times_2 = k.cos_azimuth_1_times_inner_arm_1_times_2
-        cos_azimuth_1_times_tcp_radius_1 = k.cos_azimuth_1_times_tcp_radius_1
-        cos_azimuth_2 = k.cos_azimuth_2
+        cos_azimuth_1_times_tcp_radius_1, cos_azimuth_2 = k.cos_azimuth_1_times_tcp_radius_1, k.cos_azimuth_2
         cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
         cos_azimuth_2_times_inner_arm_2_times_2 = k.cos_azimuth_2_times_inner_arm_2_times_2
-        cos_azimuth_2_times_tcp_radius_2 = k.cos_azimuth_2_times_tcp_radius_2
-        cos_azimuth_3 = k.cos_azimuth_3
+        cos_azimuth_2_times_tcp_radius_2, cos_azimuth_3 = k.cos_azimuth_2_times_tcp_radius_2, k.cos_azimuth_3
         cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
         cos_azimuth_3_times_inner_arm_3_times_2 = k.cos_azimuth_3_times_inner_arm_3_times_2
-        cos_azimuth_3_times_tcp_radius_3 = k.cos_azimuth_3_times_tcp_radius_3
-        inner_arm_1 = k.inner_arm_1
+        cos_azimuth_3_times_tcp_radius_3, inner_arm_1 = k.cos_azimuth_3_times_tcp_radius_3, k.inner_arm_1
         inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
-        inner_arm_1_times_sin_azimuth_1_times_2 = k.inner_arm_1_times_sin_azimuth_1_times_2
-        inner_arm_2 = k.inner_arm_2
+        inner_arm_1_times_sin_azimuth_1_times_2, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1_times_2, k.inner_arm_2
         inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
-        inner_arm_2_times_sin_azimuth_2_times_2 = k.inner_arm_2_times_sin_azimuth_2_times_2
-        inner_arm_3 = k.inner_arm_3
+        inner_arm_2_times_sin_azimuth_2_times_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2_times_2, k.inner_arm_3
         inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
-        inner_arm_3_times_sin_azimuth_3_times_2 = k.inner_arm_3_times_sin_azimuth_3_times_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        outer_arm_1_squared = k.outer_arm_1_squared
+        inner_arm_3_times_sin_azimuth_3_times_2, offset_a1 = k.inner_arm_3_times_sin_azimuth_3_times_2, k.offset_a1
+        offset_a2, offset_a3, outer_arm_1_squared = k.offset_a2, k.offset_a3, k.outer_arm_1_squared
         outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
-        part_of_determinant_divisor = k.part_of_determinant_divisor
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_1_x = k.part_of_pivot_1_x
-        part_of_pivot_1_y = k.part_of_pivot_1_y
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_3_x = k.part_of_pivot_3_x
-        part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_projection_2 = k.part_of_projection_2
-        part_of_projection_3 = k.part_of_projection_3
-        sin_azimuth_1 = k.sin_azimuth_1
-        sin_azimuth_1_times_tcp_radius_1 = k.sin_azimuth_1_times_tcp_radius_1
-        sin_azimuth_2 = k.sin_azimuth_2
-        sin_azimuth_2_times_tcp_radius_2 = k.sin_azimuth_2_times_tcp_radius_2
-        sin_azimuth_3 = k.sin_azimuth_3
-        sin_azimuth_3_times_tcp_radius_3 = k.sin_azimuth_3_times_tcp_radius_3
-        tcp_radius_1 = k.tcp_radius_1
-        tcp_radius_2 = k.tcp_radius_2
-        tcp_radius_3 = k.tcp_radius_3
-        twice_cos_azimuth_1 = k.twice_cos_azimuth_1
-        twice_cos_azimuth_2 = k.twice_cos_azimuth_2
-        twice_cos_azimuth_3 = k.twice_cos_azimuth_3
-        twice_inner_arm_1 = k.twice_inner_arm_1
-        twice_inner_arm_2 = k.twice_inner_arm_2
-        twice_inner_arm_3 = k.twice_inner_arm_3
-        twice_sin_azimuth_1 = k.twice_sin_azimuth_1
-        twice_sin_azimuth_2 = k.twice_sin_azimuth_2
+        part_of_determinant_divisor, part_of_normal_divisor = k.part_of_determinant_divisor, k.part_of_normal_divisor
+        part_of_pivot_1_x, part_of_pivot_1_y = k.part_of_pivot_1_x, k.part_of_pivot_1_y
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        part_of_pivot_3_x, part_of_pivot_3_y = k.part_of_pivot_3_x, k.part_of_pivot_3_y
+        part_of_projection_2, part_of_projection_3 = k.part_of_projection_2, k.part_of_projection_3
+        sin_azimuth_1, sin_azimuth_1_times_tcp_radius_1 = k.sin_azimuth_1, k.sin_azimuth_1_times_tcp_radius_1
+        sin_azimuth_2, sin_azimuth_2_times_tcp_radius_2 = k.sin_azimuth_2, k.sin_azimuth_2_times_tcp_radius_2
+        sin_azimuth_3, sin_azimuth_3_times_tcp_radius_3 = k.sin_azimuth_3, k.sin_azimuth_3_times_tcp_radius_3
+        tcp_radius_1, tcp_radius_2, tcp_radius_3 = k.tcp_radius_1, k.tcp_radius_2, k.tcp_radius_3
+        twice_cos_azimuth_1, twice_cos_azimuth_2 = k.twice_cos_azimuth_1, k.twice_cos_azimuth_2
+        twice_cos_azimuth_3, twice_inner_arm_1 = k.twice_cos_azimuth_3, k.twice_inner_arm_1
+        twice_inner_arm_2, twice_inner_arm_3 = k.twice_inner_arm_2, k.twice_inner_arm_3
+        twice_sin_azimuth_1, twice_sin_azimuth_2 = k.twice_sin_azimuth_1, k.twice_sin_azimuth_2
         twice_sin_azimuth_3 = k.twice_sin_azimuth_3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1*sin_a1
+        pivot_1_z = -inner_arm_1 * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2*sin_a2
+        pivot_2_z = -inner_arm_2 * sin_a2
         centre_1_to_2_z = pivot_2_z - pivot_1_z
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
         centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3*sin_a3
+        pivot_3_z = -inner_arm_3 * sin_a3
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         # normal to the plane of the centres
-        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2: centre about which it swings
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        # rod 1: centre about which it swings
+        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
+        # rod 2: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3: centre about which it swings
+        # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = (
-            part_of_projection_2
-            + 0.5*(
-                centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y + centre_1_to_2_z*centre_1_to_2_z
-            )
+        projection_2 = part_of_projection_2 + 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
         )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = (
-            part_of_projection_3
-            + 0.5*(
-                centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_y*centre_1_to_3_y + centre_1_to_3_z*centre_1_to_3_z
-            )
+        projection_3 = part_of_projection_3 + 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
         )
-        one_by_normal_square = 1.0/normal_square
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_y*normal_z - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - centre_1_to_2_y*normal_z)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y * normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y * normal_z) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
-                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = outer_arm_1_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
-        part_of_slope_1_by_y = base_radius_1 + inner_arm_1*cos_a1
-        slope_1_by_x = 2.0*(cos_azimuth_1_times_tcp_radius_1 + x) - part_of_slope_1_by_y*twice_cos_azimuth_1
-        y = foot_y + pivot_1_y + height_by_normal*normal_y
-        slope_1_by_y = 2.0*(sin_azimuth_1_times_tcp_radius_1 + y) - part_of_slope_1_by_y*twice_sin_azimuth_1
-        z = foot_z + pivot_1_z + height_by_normal*normal_z
-        twice_z = 2.0*z
-        slope_1_by_z = twice_z + twice_inner_arm_1*sin_a1
-        part_of_slope_2_by_x = base_radius_2 + inner_arm_2*cos_a2
-        slope_2_by_y = 2.0*(sin_azimuth_2_times_tcp_radius_2 + y) - part_of_slope_2_by_x*twice_sin_azimuth_2
-        slope_2_by_z = twice_z + twice_inner_arm_2*sin_a2
-        part_of_slope_3_by_y = base_radius_3 + inner_arm_3*cos_a3
-        slope_3_by_y = 2.0*(sin_azimuth_3_times_tcp_radius_3 + y) - part_of_slope_3_by_y*twice_sin_azimuth_3
-        slope_3_by_z = twice_z + twice_inner_arm_3*sin_a3
-        part_of_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y
-        slope_2_by_x = 2.0*(cos_azimuth_2_times_tcp_radius_2 + x) - part_of_slope_2_by_x*twice_cos_azimuth_2
-        slope_3_by_x = 2.0*(cos_azimuth_3_times_tcp_radius_3 + x) - part_of_slope_3_by_y*twice_cos_azimuth_3
-        part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
-        part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        part_of_slope_1_by_y = base_radius_1 + inner_arm_1 * cos_a1
+        slope_1_by_x = 2.0 * (cos_azimuth_1_times_tcp_radius_1 + x) - part_of_slope_1_by_y * twice_cos_azimuth_1
+        y = foot_y + pivot_1_y + height_by_normal * normal_y
+        slope_1_by_y = 2.0 * (sin_azimuth_1_times_tcp_radius_1 + y) - part_of_slope_1_by_y * twice_sin_azimuth_1
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
+        twice_z = 2.0 * z
+        slope_1_by_z = twice_z + twice_inner_arm_1 * sin_a1
+        part_of_slope_2_by_x = base_radius_2 + inner_arm_2 * cos_a2
+        slope_2_by_y = 2.0 * (sin_azimuth_2_times_tcp_radius_2 + y) - part_of_slope_2_by_x * twice_sin_azimuth_2
+        slope_2_by_z = twice_z + twice_inner_arm_2 * sin_a2
+        part_of_slope_3_by_y = base_radius_3 + inner_arm_3 * cos_a3
+        slope_3_by_y = 2.0 * (sin_azimuth_3_times_tcp_radius_3 + y) - part_of_slope_3_by_y * twice_sin_azimuth_3
+        slope_3_by_z = twice_z + twice_inner_arm_3 * sin_a3
+        part_of_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        slope_2_by_x = 2.0 * (cos_azimuth_2_times_tcp_radius_2 + x) - part_of_slope_2_by_x * twice_cos_azimuth_2
+        slope_3_by_x = 2.0 * (cos_azimuth_3_times_tcp_radius_3 + x) - part_of_slope_3_by_y * twice_cos_azimuth_3
+        part_of_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        part_of_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
-            part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
+            part_of_determinant * slope_1_by_x
+            + part_of_determinant_2 * slope_1_by_y
+            + part_of_determinant_3 * slope_1_by_z
         )
         # nothing controls the plate
         if not (abs(determinant) > part_of_determinant_divisor):
             return Status.IMPOSSIBLE
         tcp_radius_1_minus_part_of_slope_1_by_y = tcp_radius_1 - part_of_slope_1_by_y
         slope_1_by_a1 = (
-            (
-                (x + tcp_radius_1_minus_part_of_slope_1_by_y*cos_azimuth_1)*cos_azimuth_1_times_inner_arm_1_times_2
-                + inner_arm_1_times_sin_azimuth_1_times_2*(y + tcp_radius_1_minus_part_of_slope_1_by_y*sin_azimuth_1)
-            )*sin_a1
-            + (z - pivot_1_z)*twice_inner_arm_1*cos_a1
-        )
-        one_by_determinant_divisor = 1.0/determinant
-        part = one_by_determinant_divisor*slope_1_by_a1
+            (x + tcp_radius_1_minus_part_of_slope_1_by_y * cos_azimuth_1) * cos_azimuth_1_times_inner_arm_1_times_2
+            + inner_arm_1_times_sin_azimuth_1_times_2 * (y + tcp_radius_1_minus_part_of_slope_1_by_y * sin_azimuth_1)
+        ) * sin_a1 + (z - pivot_1_z) * twice_inner_arm_1 * cos_a1
+        one_by_determinant_divisor = 1.0 / determinant
+        part = one_by_determinant_divisor * slope_1_by_a1
         tcp_radius_2_minus_part_of_slope_2_by_x = tcp_radius_2 - part_of_slope_2_by_x
         slope_2_by_a2 = (
-            (
-                (x + tcp_radius_2_minus_part_of_slope_2_by_x*cos_azimuth_2)*cos_azimuth_2_times_inner_arm_2_times_2
-                + inner_arm_2_times_sin_azimuth_2_times_2*(y + tcp_radius_2_minus_part_of_slope_2_by_x*sin_azimuth_2)
-            )*sin_a2
-            + (z - pivot_2_z)*twice_inner_arm_2*cos_a2
-        )
-        part_2 = one_by_determinant_divisor*slope_2_by_a2
+            (x + tcp_radius_2_minus_part_of_slope_2_by_x * cos_azimuth_2) * cos_azimuth_2_times_inner_arm_2_times_2
+            + inner_arm_2_times_sin_azimuth_2_times_2 * (y + tcp_radius_2_minus_part_of_slope_2_by_x * sin_azimuth_2)
+        ) * sin_a2 + (z - pivot_2_z) * twice_inner_arm_2 * cos_a2
+        part_2 = one_by_determinant_divisor * slope_2_by_a2
         tcp_radius_3_minus_part_of_slope_3_by_y = tcp_radius_3 - part_of_slope_3_by_y
         slope_3_by_a3 = (
-            (
-                (x + tcp_radius_3_minus_part_of_slope_3_by_y*cos_azimuth_3)*cos_azimuth_3_times_inner_arm_3_times_2
-                + inner_arm_3_times_sin_azimuth_3_times_2*(y + tcp_radius_3_minus_part_of_slope_3_by_y*sin_azimuth_3)
-            )*sin_a3
-            + (z - pivot_3_z)*twice_inner_arm_3*cos_a3
-        )
-        part_3 = one_by_determinant_divisor*slope_3_by_a3
+            (x + tcp_radius_3_minus_part_of_slope_3_by_y * cos_azimuth_3) * cos_azimuth_3_times_inner_arm_3_times_2
+            + inner_arm_3_times_sin_azimuth_3_times_2 * (y + tcp_radius_3_minus_part_of_slope_3_by_y * sin_azimuth_3)
+        ) * sin_a3 + (z - pivot_3_z) * twice_inner_arm_3 * cos_a3
+        part_3 = one_by_determinant_divisor * slope_3_by_a3
         return (
             (
-                -part*part_of_determinant,
-                part_2*(slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y),
-                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
+                -part * part_of_determinant,
+                part_2 * (slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y),
+                (slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z) * part_3,
             ),
             (
-                -part*part_of_determinant_2,
-                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*part_2,
-                part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
+                -part * part_of_determinant_2,
+                (slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z) * part_2,
+                part_3 * (slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x),
             ),
             (
-                -part*part_of_determinant_3,
-                part_2*(slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x),
-                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
+                -part * part_of_determinant_3,
+                part_2 * (slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x),
+                (slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y) * part_3,
             ),
         )
 
@@ -1480,7 +1082,7 @@ class DeltaP3CType3(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -1489,85 +1091,61 @@ class DeltaP3CType3(OffsetKinematics):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        cos_azimuth_1 = k.cos_azimuth_1
-        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
-        cos_azimuth_2 = k.cos_azimuth_2
-        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
-        cos_azimuth_3 = k.cos_azimuth_3
-        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
-        inner_arm_1 = k.inner_arm_1
-        inner_arm_1_times_shortest_link = k.inner_arm_1_times_shortest_link
-        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
-        inner_arm_2 = k.inner_arm_2
+        cos_azimuth_1, cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1, k.cos_azimuth_1_times_inner_arm_1
+        cos_azimuth_2, cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2, k.cos_azimuth_2_times_inner_arm_2
+        cos_azimuth_3, cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3, k.cos_azimuth_3_times_inner_arm_3
+        inner_arm_1, inner_arm_1_times_shortest_link = k.inner_arm_1, k.inner_arm_1_times_shortest_link
+        inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
         inner_arm_2_times_shortest_link = k.inner_arm_2_times_shortest_link
-        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
-        inner_arm_3 = k.inner_arm_3
+        inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
         inner_arm_3_times_shortest_link = k.inner_arm_3_times_shortest_link
-        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        outer_arm_1 = k.outer_arm_1
-        outer_arm_1_squared = k.outer_arm_1_squared
-        outer_arm_2 = k.outer_arm_2
-        outer_arm_3 = k.outer_arm_3
-        part_of_pivot_1_x = k.part_of_pivot_1_x
-        part_of_pivot_1_y = k.part_of_pivot_1_y
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_3_x = k.part_of_pivot_3_x
-        part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
-        sin_azimuth_1 = k.sin_azimuth_1
-        sin_azimuth_2 = k.sin_azimuth_2
-        sin_azimuth_3 = k.sin_azimuth_3
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
-            and -1e9 <= ref_a3 <= 1e9
-        ):
+        inner_arm_3_times_sin_azimuth_3, mid_a1, mid_a2 = k.inner_arm_3_times_sin_azimuth_3, k.mid_a1, k.mid_a2
+        mid_a3, min_type2_margin, offset_a1, offset_a2 = k.mid_a3, k.min_type2_margin, k.offset_a1, k.offset_a2
+        offset_a3, outer_arm_1, outer_arm_1_squared = k.offset_a3, k.outer_arm_1, k.outer_arm_1_squared
+        outer_arm_2, outer_arm_3, part_of_pivot_1_x = k.outer_arm_2, k.outer_arm_3, k.part_of_pivot_1_x
+        part_of_pivot_1_y, part_of_pivot_2_x = k.part_of_pivot_1_y, k.part_of_pivot_2_x
+        part_of_pivot_2_y, part_of_pivot_3_x = k.part_of_pivot_2_y, k.part_of_pivot_3_x
+        part_of_pivot_3_y, part_of_type2_rods_coplanar = k.part_of_pivot_3_y, k.part_of_type2_rods_coplanar
+        sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
+        single_a1, single_a2, single_a3 = k.single_a1, k.single_a2, k.single_a3
+        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # position of the flange: the point less its offset
         span_1_x = flange_x - part_of_pivot_1_x  # rod 1: known part of its vector
         flange_y = y - point_y  # position of the flange: the point less its offset
         span_1_y = flange_y - part_of_pivot_1_y
-        along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
+        along_a1 = span_1_x * cos_azimuth_1 + span_1_y * sin_azimuth_1
         flange_z = z - point_z  # position of the flange: the point less its offset
-        flange_z_squared = flange_z*flange_z
-        effective_a1 = root(flange_z_squared + along_a1*along_a1)  # effective length of the arm that a1 turns
+        flange_z_squared = flange_z * flange_z
+        effective_a1 = root(flange_z_squared + along_a1 * along_a1)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        part_of_third_square_a1 = span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1
+        part_of_third_square_a1 = span_1_y * cos_azimuth_1 - span_1_x * sin_azimuth_1
         # square of the third side of the triangle
-        third_square_a1 = (outer_arm_1 + part_of_third_square_a1)*(outer_arm_1 - part_of_third_square_a1)
+        third_square_a1 = (outer_arm_1 + part_of_third_square_a1) * (outer_arm_1 - part_of_third_square_a1)
         effective_a1_minus_inner_arm_1 = effective_a1 - inner_arm_1
         # law of cosines for a1: rod 1: 1 - cosine, times a scale
-        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
+        one_less_cos_a1 = third_square_a1 - effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
         effective_a1_plus_inner_arm_1 = effective_a1 + inner_arm_1
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - third_square_a1
+        one_plus_cos_a1 = effective_a1_plus_inner_arm_1 * effective_a1_plus_inner_arm_1 - third_square_a1
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
                 outer_arm_1
                 - root(
                     outer_arm_1_squared
-                    + 0.5*(
-                        abs(one_less_cos_a1) + effective_a1_minus_inner_arm_1*effective_a1_minus_inner_arm_1
-                        + effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1 - abs(one_plus_cos_a1)
+                    + 0.5
+                    * (
+                        abs(one_less_cos_a1)
+                        + effective_a1_minus_inner_arm_1 * effective_a1_minus_inner_arm_1
+                        + effective_a1_plus_inner_arm_1 * effective_a1_plus_inner_arm_1
+                        - abs(one_plus_cos_a1)
                     )
                     - third_square_a1
                 )
@@ -1575,123 +1153,129 @@ class DeltaP3CType3(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = flange_y - part_of_pivot_2_y
-        along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = root(flange_z_squared + along_a2*along_a2)  # effective length of the arm that a2 turns
+        along_a2 = span_2_x * cos_azimuth_2 + span_2_y * sin_azimuth_2
+        effective_a2 = root(flange_z_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        part_of_third_square_a2 = span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2
+        part_of_third_square_a2 = span_2_y * cos_azimuth_2 - span_2_x * sin_azimuth_2
         # square of the third side of the triangle
-        third_square_a2 = (outer_arm_2 + part_of_third_square_a2)*(outer_arm_2 - part_of_third_square_a2)
+        third_square_a2 = (outer_arm_2 + part_of_third_square_a2) * (outer_arm_2 - part_of_third_square_a2)
         effective_a2_minus_inner_arm_2 = effective_a2 - inner_arm_2
         # law of cosines for a2: rod 2: 1 - cosine, times a scale
-        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
+        one_less_cos_a2 = third_square_a2 - effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
         effective_a2_plus_inner_arm_2 = effective_a2 + inner_arm_2
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - third_square_a2
+        one_plus_cos_a2 = effective_a2_plus_inner_arm_2 * effective_a2_plus_inner_arm_2 - third_square_a2
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
                 outer_arm_2
                 - root(
-                    0.5*(
-                        abs(one_less_cos_a2) + effective_a2_minus_inner_arm_2*effective_a2_minus_inner_arm_2
-                        + effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2 - abs(one_plus_cos_a2)
+                    0.5
+                    * (
+                        abs(one_less_cos_a2)
+                        + effective_a2_minus_inner_arm_2 * effective_a2_minus_inner_arm_2
+                        + effective_a2_plus_inner_arm_2 * effective_a2_plus_inner_arm_2
+                        - abs(one_plus_cos_a2)
                     )
-                    + outer_arm_2*outer_arm_2 - third_square_a2
+                    + outer_arm_2 * outer_arm_2
+                    - third_square_a2
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_x = flange_x - part_of_pivot_3_x  # rod 3: known part of its vector
         span_3_y = flange_y - part_of_pivot_3_y
-        along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = root(flange_z_squared + along_a3*along_a3)  # effective length of the arm that a3 turns
+        along_a3 = span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3
+        effective_a3 = root(flange_z_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        part_of_third_square_a3 = span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3
+        part_of_third_square_a3 = span_3_y * cos_azimuth_3 - span_3_x * sin_azimuth_3
         # square of the third side of the triangle
-        third_square_a3 = (outer_arm_3 + part_of_third_square_a3)*(outer_arm_3 - part_of_third_square_a3)
+        third_square_a3 = (outer_arm_3 + part_of_third_square_a3) * (outer_arm_3 - part_of_third_square_a3)
         effective_a3_minus_inner_arm_3 = effective_a3 - inner_arm_3
         # law of cosines for a3: rod 3: 1 - cosine, times a scale
-        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
+        one_less_cos_a3 = third_square_a3 - effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
         effective_a3_plus_inner_arm_3 = effective_a3 + inner_arm_3
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - third_square_a3
+        one_plus_cos_a3 = effective_a3_plus_inner_arm_3 * effective_a3_plus_inner_arm_3 - third_square_a3
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
         divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
                 outer_arm_3
                 - root(
-                    0.5*(
-                        abs(one_less_cos_a3) + effective_a3_minus_inner_arm_3*effective_a3_minus_inner_arm_3
-                        + effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3 - abs(one_plus_cos_a3)
+                    0.5
+                    * (
+                        abs(one_less_cos_a3)
+                        + effective_a3_minus_inner_arm_3 * effective_a3_minus_inner_arm_3
+                        + effective_a3_plus_inner_arm_3 * effective_a3_plus_inner_arm_3
+                        - abs(one_plus_cos_a3)
                     )
-                    + outer_arm_3*outer_arm_3 - third_square_a3
+                    + outer_arm_3 * outer_arm_3
+                    - third_square_a3
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a1 = (along_a1*cos_swing_a1 + flange_z*sin_swing_a1)/effective_a1
-        rod_1_x = span_1_x - cos_a1*cos_azimuth_1_times_inner_arm_1
-        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1
-        sin_a1 = (along_a1*sin_swing_a1 - flange_z*cos_swing_a1)/effective_a1
-        pivot_1_z = -inner_arm_1*sin_a1
+        cos_a1 = (along_a1 * cos_swing_a1 + flange_z * sin_swing_a1) / effective_a1
+        rod_1_x = span_1_x - cos_a1 * cos_azimuth_1_times_inner_arm_1
+        rod_1_y = span_1_y - inner_arm_1_times_sin_azimuth_1 * cos_a1
+        sin_a1 = (along_a1 * sin_swing_a1 - flange_z * cos_swing_a1) / effective_a1
+        pivot_1_z = -inner_arm_1 * sin_a1
         rod_1_z = flange_z - pivot_1_z
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (along_a2*cos_swing_a2 + flange_z*sin_swing_a2)/effective_a2
-        rod_2_x = span_2_x - cos_a2*cos_azimuth_2_times_inner_arm_2
-        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2
-        sin_a2 = (along_a2*sin_swing_a2 - flange_z*cos_swing_a2)/effective_a2
-        pivot_2_z = -inner_arm_2*sin_a2
+        cos_a2 = (along_a2 * cos_swing_a2 + flange_z * sin_swing_a2) / effective_a2
+        rod_2_x = span_2_x - cos_a2 * cos_azimuth_2_times_inner_arm_2
+        rod_2_y = span_2_y - inner_arm_2_times_sin_azimuth_2 * cos_a2
+        sin_a2 = (along_a2 * sin_swing_a2 - flange_z * cos_swing_a2) / effective_a2
+        pivot_2_z = -inner_arm_2 * sin_a2
         rod_2_z = flange_z - pivot_2_z
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
-        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a3 = (along_a3*cos_swing_a3 + flange_z*sin_swing_a3)/effective_a3
-        rod_3_x = span_3_x - cos_a3*cos_azimuth_3_times_inner_arm_3
-        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3
-        sin_a3 = (along_a3*sin_swing_a3 - flange_z*cos_swing_a3)/effective_a3
-        pivot_3_z = -inner_arm_3*sin_a3
+        cos_a3 = (along_a3 * cos_swing_a3 + flange_z * sin_swing_a3) / effective_a3
+        rod_3_x = span_3_x - cos_a3 * cos_azimuth_3_times_inner_arm_3
+        rod_3_y = span_3_y - inner_arm_3_times_sin_azimuth_3 * cos_a3
+        sin_a3 = (along_a3 * sin_swing_a3 - flange_z * cos_swing_a3) / effective_a3
+        pivot_3_z = -inner_arm_3 * sin_a3
         rod_3_z = flange_z - pivot_3_z
-        type2_rods_coplanar = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
-                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-            )
+        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
-        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: whole turns added
+        near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -1700,130 +1284,107 @@ class DeltaP3CType3(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        cos_azimuth_1 = k.cos_azimuth_1
-        cos_azimuth_1_times_inner_arm_1 = k.cos_azimuth_1_times_inner_arm_1
-        cos_azimuth_2 = k.cos_azimuth_2
-        cos_azimuth_2_times_inner_arm_2 = k.cos_azimuth_2_times_inner_arm_2
-        cos_azimuth_3 = k.cos_azimuth_3
-        cos_azimuth_3_times_inner_arm_3 = k.cos_azimuth_3_times_inner_arm_3
-        inner_arm_1 = k.inner_arm_1
-        inner_arm_1_times_sin_azimuth_1 = k.inner_arm_1_times_sin_azimuth_1
-        inner_arm_2 = k.inner_arm_2
-        inner_arm_2_times_sin_azimuth_2 = k.inner_arm_2_times_sin_azimuth_2
-        inner_arm_3 = k.inner_arm_3
-        inner_arm_3_times_sin_azimuth_3 = k.inner_arm_3_times_sin_azimuth_3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        outer_arm_1 = k.outer_arm_1
+        assembly_sign, cos_azimuth_1 = k.assembly_sign, k.cos_azimuth_1
+        cos_azimuth_1_times_inner_arm_1, cos_azimuth_2 = k.cos_azimuth_1_times_inner_arm_1, k.cos_azimuth_2
+        cos_azimuth_2_times_inner_arm_2, cos_azimuth_3 = k.cos_azimuth_2_times_inner_arm_2, k.cos_azimuth_3
+        cos_azimuth_3_times_inner_arm_3, inner_arm_1 = k.cos_azimuth_3_times_inner_arm_3, k.inner_arm_1
+        inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k.inner_arm_1_times_sin_azimuth_1, k.inner_arm_2
+        inner_arm_2_times_sin_azimuth_2, inner_arm_3 = k.inner_arm_2_times_sin_azimuth_2, k.inner_arm_3
+        inner_arm_3_times_sin_azimuth_3, offset_a1 = k.inner_arm_3_times_sin_azimuth_3, k.offset_a1
+        offset_a2, offset_a3, outer_arm_1 = k.offset_a2, k.offset_a3, k.outer_arm_1
         outer_arm_1_squared = k.outer_arm_1_squared
-        outer_arm_1_squared_times_rounding = k.outer_arm_1_squared_times_rounding
-        outer_arm_2 = k.outer_arm_2
-        outer_arm_3 = k.outer_arm_3
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_1_x = k.part_of_pivot_1_x
-        part_of_pivot_1_y = k.part_of_pivot_1_y
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_3_x = k.part_of_pivot_3_x
-        part_of_pivot_3_y = k.part_of_pivot_3_y
-        part_of_projection_2 = k.part_of_projection_2
-        part_of_projection_3 = k.part_of_projection_3
-        sin_azimuth_1 = k.sin_azimuth_1
-        sin_azimuth_2 = k.sin_azimuth_2
-        sin_azimuth_3 = k.sin_azimuth_3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        outer_arm_1_squared_times_rounding, outer_arm_2 = k.outer_arm_1_squared_times_rounding, k.outer_arm_2
+        outer_arm_3, part_of_normal_divisor = k.outer_arm_3, k.part_of_normal_divisor
+        part_of_pivot_1_x, part_of_pivot_1_y = k.part_of_pivot_1_x, k.part_of_pivot_1_y
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        part_of_pivot_3_x, part_of_pivot_3_y = k.part_of_pivot_3_x, k.part_of_pivot_3_y
+        part_of_projection_2, part_of_projection_3 = k.part_of_projection_2, k.part_of_projection_3
+        sin_azimuth_1, sin_azimuth_2, sin_azimuth_3 = k.sin_azimuth_1, k.sin_azimuth_2, k.sin_azimuth_3
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1*cos_a1
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_y = part_of_pivot_1_y + inner_arm_1_times_sin_azimuth_1 * cos_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2*cos_a2
+        pivot_2_y = part_of_pivot_2_y + inner_arm_2_times_sin_azimuth_2 * cos_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         sin_a1 = sin(a1)
-        pivot_1_z = -inner_arm_1*sin_a1
+        pivot_1_z = -inner_arm_1 * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = -inner_arm_2*sin_a2
+        pivot_2_z = -inner_arm_2 * sin_a2
         centre_1_to_2_z = pivot_2_z - pivot_1_z
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3*cos_a3
+        pivot_3_y = part_of_pivot_3_y + inner_arm_3_times_sin_azimuth_3 * cos_a3
         centre_1_to_3_y = pivot_3_y - pivot_1_y
         sin_a3 = sin(a3)
-        pivot_3_z = -inner_arm_3*sin_a3
+        pivot_3_z = -inner_arm_3 * sin_a3
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         # normal to the plane of the centres
-        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
-        pivot_1_x = part_of_pivot_1_x + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2: centre about which it swings
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        # rod 1: centre about which it swings
+        pivot_1_x = part_of_pivot_1_x + cos_a1 * cos_azimuth_1_times_inner_arm_1
+        # rod 2: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + cos_a2 * cos_azimuth_2_times_inner_arm_2
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_3_x + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3: centre about which it swings
+        # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_3_x + cos_a3 * cos_azimuth_3_times_inner_arm_3
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = (
-            part_of_projection_2
-            + 0.5*(
-                centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y + centre_1_to_2_z*centre_1_to_2_z
-            )
+        projection_2 = part_of_projection_2 + 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
         )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = (
-            part_of_projection_3
-            + 0.5*(
-                centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_y*centre_1_to_3_y + centre_1_to_3_z*centre_1_to_3_z
-            )
+        projection_3 = part_of_projection_3 + 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
         )
-        one_by_normal_square = 1.0/normal_square
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_y*normal_z - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - centre_1_to_2_y*normal_z)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y * normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y * normal_z) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
-                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = outer_arm_1_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = outer_arm_1_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -outer_arm_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        flange_z = foot_z + pivot_1_z + height_by_normal*normal_z
-        flange_x = foot_x + pivot_1_x + height_by_normal*normal_x
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        flange_z = foot_z + pivot_1_z + height_by_normal * normal_z
+        flange_x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = flange_x - part_of_pivot_1_x  # rod 1: known part of its vector
-        flange_y = foot_y + pivot_1_y + height_by_normal*normal_y
+        flange_y = foot_y + pivot_1_y + height_by_normal * normal_y
         span_1_y = flange_y - part_of_pivot_1_y
-        branch_knee_1 = ((-span_1_x*cos_azimuth_1 - span_1_y*sin_azimuth_1)*sin_a1 - flange_z*cos_a1)/outer_arm_1
+        branch_knee_1 = (
+            (-span_1_x * cos_azimuth_1 - span_1_y * sin_azimuth_1) * sin_a1 - flange_z * cos_a1
+        ) / outer_arm_1
         span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = flange_y - part_of_pivot_2_y
-        branch_knee_2 = ((-span_2_x*cos_azimuth_2 - span_2_y*sin_azimuth_2)*sin_a2 - flange_z*cos_a2)/outer_arm_2
+        branch_knee_2 = (
+            (-span_2_x * cos_azimuth_2 - span_2_y * sin_azimuth_2) * sin_a2 - flange_z * cos_a2
+        ) / outer_arm_2
         span_3_x = flange_x - part_of_pivot_3_x  # rod 3: known part of its vector
         span_3_y = flange_y - part_of_pivot_3_y
-        branch_knee_3 = ((-span_3_x*cos_azimuth_3 - span_3_y*sin_azimuth_3)*sin_a3 - flange_z*cos_a3)/outer_arm_3
+        branch_knee_3 = (
+            (-span_3_x * cos_azimuth_3 - span_3_y * sin_azimuth_3) * sin_a3 - flange_z * cos_a3
+        ) / outer_arm_3
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -1837,8 +1398,7 @@ class DeltaP3CType3(OffsetKinematics):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -25,47 +25,31 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._types import (
-    Axis,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
-from softkin._unrolled.gantry2 import unrolled
+from softkin._scalar import are_usable
+from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    offset_x: float
-    offset_y: float
-    check_limits: bool
-    lower_x: float
-    upper_x: float
-    unlimited_x: bool
-    lowest_x: float
-    highest_x: float
-    lower_y: float
-    upper_y: float
-    unlimited_y: bool
-    lowest_y: float
-    highest_y: float
-    machine_scale: float
-    machine_scale_times_plane: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        offset_x, offset_y = p["offset_x"], p["offset_y"]
+        self.lowest_x, self.highest_x, *_ = machine._window("x")
+        self.lowest_y, self.highest_y, *_ = machine._window("y")
+        machine_scale = 1.0  # characteristic length of the machine
+        machine_scale_times_plane = 1e-6 * machine_scale
+        self.offset_x, self.offset_y, self.machine_scale_times_plane = offset_x, offset_y, machine_scale_times_plane
 
 
 class Gantry2(OffsetKinematics):
@@ -74,7 +58,7 @@ class Gantry2(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_constants",)
 
     NAME = "Kin_Gantry2"
     AXES = (
@@ -82,34 +66,13 @@ class Gantry2(OffsetKinematics):
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="offset_x", kind="distance", unit="u", meaning="X: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_y", kind="distance", unit="u", meaning="Y: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_x", kind="distance", unit="u", meaning="X: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_x", kind="distance", unit="u", meaning="X: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_y", kind="distance", unit="u", meaning="Y: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_y", kind="distance", unit="u", meaning="Y: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("distance", "offset_x", "X: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_y", "Y: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_x", "X: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_x", "X: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_y", "Y: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_y", "Y: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = ()
     DEFAULT_CONFIGURATION = ()
@@ -123,8 +86,15 @@ class Gantry2(OffsetKinematics):
     DISTANCE_AXES = (0, 1)
 
     def __init__(
-        self, *, offset_x: float = 0.0, offset_y: float = 0.0, lower_x: float = 0.0, upper_x: float = 0.0,
-        lower_y: float = 0.0, upper_y: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        offset_x: float = 0.0,
+        offset_y: float = 0.0,
+        lower_x: float = 0.0,
+        upper_x: float = 0.0,
+        lower_y: float = 0.0,
+        upper_y: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -136,61 +106,14 @@ class Gantry2(OffsetKinematics):
         upper_y: Y: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(offset_x, offset_y, lower_x, upper_x, lower_y, upper_y, check_limits)
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(lowest_x=-1e12, lowest_y=-1e12, highest_x=1e12, highest_y=1e12)
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, offset_x: float, offset_y: float, lower_x: float, upper_x: float, lower_y: float, upper_y: float,
-        check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (offset_x >= -1e9 and offset_x <= 1e9):
-            raise self._refusal("offset_x: X: axis value at the kinematic zero position", offset_x=offset_x)
-        if not (offset_y >= -1e9 and offset_y <= 1e9):
-            raise self._refusal("offset_y: Y: axis value at the kinematic zero position", offset_y=offset_y)
-        if not (lower_x >= -1e9 and lower_x <= 1e9):
-            raise self._refusal("lower_x: X: lower limit of the axis, both 0: no limit", lower_x=lower_x)
-        if not (upper_x >= -1e9 and upper_x <= 1e9):
-            raise self._refusal("upper_x: X: upper limit of the axis, both 0: no limit", upper_x=upper_x)
-        if not (lower_y >= -1e9 and lower_y <= 1e9):
-            raise self._refusal("lower_y: Y: lower limit of the axis, both 0: no limit", lower_y=lower_y)
-        if not (upper_y >= -1e9 and upper_y <= 1e9):
-            raise self._refusal("upper_y: Y: upper limit of the axis, both 0: no limit", upper_y=upper_y)
-        if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
-            raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: whether it has no limits
-        effective_lower_x = lower_x
-        effective_upper_x = upper_x
-        tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
-        lowest_x = -1e12 if unlimited_x else effective_lower_x - tolerance_x
-        highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
-        if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
-            raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: whether it has no limits
-        effective_lower_y = lower_y
-        effective_upper_y = upper_y
-        tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
-        lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
-        highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
-        machine_scale = 1.0  # characteristic length of the machine
-        machine_scale_times_plane = 1e-6*machine_scale
-        return Constants(
-            offset_x=offset_x, offset_y=offset_y, check_limits=check_limits, lower_x=effective_lower_x,
-            upper_x=effective_upper_x, unlimited_x=unlimited_x, lowest_x=lowest_x, highest_x=highest_x,
-            lower_y=effective_lower_y, upper_y=effective_upper_y, unlimited_y=unlimited_y, lowest_y=lowest_y,
-            highest_y=highest_y, machine_scale=machine_scale, machine_scale_times_plane=machine_scale_times_plane,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_x, axis_y = axes
         k = self._constants
-        offset_x = k.offset_x
-        offset_y = k.offset_y
+        offset_x, offset_y = k.offset_x, k.offset_y
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
             return Status.BAD_INPUT
@@ -207,16 +130,13 @@ class Gantry2(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self._constants
-        machine_scale_times_plane = k.machine_scale_times_plane
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
+        machine_scale_times_plane, offset_x, offset_y = k.machine_scale_times_plane, k.offset_x, k.offset_y
+        if not are_usable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -230,24 +150,11 @@ class Gantry2(OffsetKinematics):
         """The test of the limits."""
         axis_x, axis_y = axes
         k = self._constants
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        # limits of X
-        if not (axis_x >= lowest_x):
-            missing = lowest_x - axis_x
-            return Diagnosis(Status.UNREACHABLE, "X: below its lower limit [u]", missing)
-        if not (axis_x <= highest_x):
-            missing = axis_x - highest_x
-            return Diagnosis(Status.UNREACHABLE, "X: above its upper limit [u]", missing)
-        # limits of Y
-        if not (axis_y >= lowest_y):
-            missing = lowest_y - axis_y
-            return Diagnosis(Status.UNREACHABLE, "Y: below its lower limit [u]", missing)
-        if not (axis_y <= highest_y):
-            missing = axis_y - highest_y
-            return Diagnosis(Status.UNREACHABLE, "Y: above its upper limit [u]", missing)
+        highest_x, highest_y, lowest_x, lowest_y = k.highest_x, k.highest_y, k.lowest_x, k.lowest_y
+        if not lowest_x <= axis_x <= highest_x:
+            return beyond("X", axis_x, lowest_x, highest_x, "u")
+        if not lowest_y <= axis_y <= highest_y:
+            return beyond("Y", axis_y, lowest_y, highest_y, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
@@ -271,20 +178,14 @@ class Gantry2(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
         k = self._constants
-        machine_scale_times_plane = k.machine_scale_times_plane
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
-        ):
+        machine_scale_times_plane, offset_x, offset_y = k.machine_scale_times_plane, k.offset_x, k.offset_y
+        if not are_usable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
@@ -305,18 +206,18 @@ class Gantry2(OffsetKinematics):
         return ()
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        """The one branch: see `Mechanism.branches`."""
+        return (self.branch(frame, (), reference),)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        solve = self._one_trusted
-        return solve(frame, signs, reference)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        (x, y, z), _ = frame
+        k = self._constants
+        machine_scale_times_plane, offset_x, offset_y = k.machine_scale_times_plane, k.offset_x, k.offset_y
+        # z: a planar machine has none
+        if not (abs(z) <= machine_scale_times_plane):
+            return None
+        return (offset_x + x, offset_y + y)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -28,60 +28,34 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, are_usable, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
-from softkin._unrolled.gantrycutter2 import unrolled
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    direction_r: float
-    offset_x: float
-    offset_y: float
-    offset_r: float
-    check_limits: bool
-    lower_x: float
-    upper_x: float
-    unlimited_x: bool
-    lowest_x: float
-    highest_x: float
-    lower_y: float
-    upper_y: float
-    unlimited_y: bool
-    lowest_y: float
-    highest_y: float
-    lower_r: float
-    upper_r: float
-    unlimited_r: bool
-    lowest_r: float
-    highest_r: float
-    single_r: bool
-    mid_r: float
-    machine_scale: float
-    machine_scale_times_plane: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        direction_r, offset_x, offset_y, offset_r = p["direction_r"], p["offset_x"], p["offset_y"], p["offset_r"]
+        self.lowest_x, self.highest_x, *_ = machine._window("x")
+        self.lowest_y, self.highest_y, *_ = machine._window("y")
+        self.lowest_r, self.highest_r, self.single_r, self.mid_r = machine._window("r")
+        machine_scale = 1.0  # characteristic length of the machine
+        machine_scale_times_plane = 1e-6 * machine_scale
+        self.direction_r, self.offset_x, self.offset_y, self.offset_r = direction_r, offset_x, offset_y, offset_r
+        self.machine_scale_times_plane = machine_scale_times_plane
 
 
 class GantryCutter2(OffsetKinematics, TwistChoice):
@@ -90,7 +64,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_constants",)
 
     NAME = "Kin_GantryCutter2"
     AXES = (
@@ -99,55 +73,19 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         Axis(name="R", kind="rotary", unit="deg", meaning="Knife about Z", multi_turn=True),
     )
     PARAMETERS = (
-        Parameter(
-            name="direction_r", kind="sign", unit="",
-            meaning="Direction of the knife axis: 1 counter-clockwise, -1 clockwise", low=-1.0, high=1.0,
-            low_is_open=False, default=1.0,
-        ),
-        Parameter(
-            name="offset_x", kind="distance", unit="u", meaning="X: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_y", kind="distance", unit="u", meaning="Y: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_r", kind="angle", unit="deg", meaning="R: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_x", kind="distance", unit="u", meaning="X: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_x", kind="distance", unit="u", meaning="X: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_y", kind="distance", unit="u", meaning="Y: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_y", kind="distance", unit="u", meaning="Y: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_r", kind="angle", unit="deg", meaning="R: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_r", kind="angle", unit="deg", meaning="R: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("sign", "direction_r", "Direction of the knife axis: 1 counter-clockwise, -1 clockwise"),
+        Parameter.of("distance", "offset_x", "X: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_y", "Y: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_r", "R: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_x", "X: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_x", "X: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_y", "Y: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_y", "Y: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_r", "R: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_r", "R: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
-    CONFIGURATION = (
-        ConfigurationByte(name="R", kind="period", branches=(), default=0),
-    )
+    CONFIGURATION = (ConfigurationByte(name="R", kind="period", branches=(), default=0),)
     DEFAULT_CONFIGURATION = (0,)
     JACOBIAN_ROWS = ("x", "y", "turn z")
     MARGINS = ()
@@ -159,9 +97,19 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     DISTANCE_AXES = (2,)
 
     def __init__(
-        self, *, direction_r: int = 1, offset_x: float = 0.0, offset_y: float = 0.0, offset_r: float = 0.0,
-        lower_x: float = 0.0, upper_x: float = 0.0, lower_y: float = 0.0, upper_y: float = 0.0,
-        lower_r: float = 0.0, upper_r: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        direction_r: int = 1,
+        offset_x: float = 0.0,
+        offset_y: float = 0.0,
+        offset_r: float = 0.0,
+        lower_x: float = 0.0,
+        upper_x: float = 0.0,
+        lower_y: float = 0.0,
+        upper_y: float = 0.0,
+        lower_r: float = 0.0,
+        upper_r: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -177,102 +125,22 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         upper_r: R: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            direction_r, offset_x, offset_y, offset_r, lower_x, upper_x, lower_y, upper_y, lower_r, upper_r,
-            check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_x=-1e12, lowest_y=-1e12, lowest_r=-1e12, highest_x=1e12, highest_y=1e12, highest_r=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, direction_r: int, offset_x: float, offset_y: float, offset_r: float, lower_x: float, upper_x: float,
-        lower_y: float, upper_y: float, lower_r: float, upper_r: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not ((direction_r == -1) or (direction_r == 1)):
-            raise self._refusal(
-                "direction_r: Direction of the knife axis: 1 counter-clockwise, -1 clockwise",
-                direction_r=direction_r,
-            )
-        if not (offset_x >= -1e9 and offset_x <= 1e9):
-            raise self._refusal("offset_x: X: axis value at the kinematic zero position", offset_x=offset_x)
-        if not (offset_y >= -1e9 and offset_y <= 1e9):
-            raise self._refusal("offset_y: Y: axis value at the kinematic zero position", offset_y=offset_y)
-        if not (offset_r >= -1e9 and offset_r <= 1e9):
-            raise self._refusal("offset_r: R: axis value at the kinematic zero position", offset_r=offset_r)
-        if not (lower_x >= -1e9 and lower_x <= 1e9):
-            raise self._refusal("lower_x: X: lower limit of the axis, both 0: no limit", lower_x=lower_x)
-        if not (upper_x >= -1e9 and upper_x <= 1e9):
-            raise self._refusal("upper_x: X: upper limit of the axis, both 0: no limit", upper_x=upper_x)
-        if not (lower_y >= -1e9 and lower_y <= 1e9):
-            raise self._refusal("lower_y: Y: lower limit of the axis, both 0: no limit", lower_y=lower_y)
-        if not (upper_y >= -1e9 and upper_y <= 1e9):
-            raise self._refusal("upper_y: Y: upper limit of the axis, both 0: no limit", upper_y=upper_y)
-        if not (lower_r >= -1e9 and lower_r <= 1e9):
-            raise self._refusal("lower_r: R: lower limit of the axis, both 0: no limit", lower_r=lower_r)
-        if not (upper_r >= -1e9 and upper_r <= 1e9):
-            raise self._refusal("upper_r: R: upper limit of the axis, both 0: no limit", upper_r=upper_r)
-        if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
-            raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: whether it has no limits
-        effective_lower_x = lower_x
-        effective_upper_x = upper_x
-        tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
-        lowest_x = -1e12 if unlimited_x else effective_lower_x - tolerance_x
-        highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
-        if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
-            raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: whether it has no limits
-        effective_lower_y = lower_y
-        effective_upper_y = upper_y
-        tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
-        lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
-        highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
-        if not ((lower_r < upper_r) or (abs(lower_r) + abs(upper_r) <= 0.0)):
-            raise self._refusal("lower_r below upper_r, or both 0", lower_r=lower_r, upper_r=upper_r)
-        unlimited_r = abs(lower_r) + abs(upper_r) <= 0.0  # r: whether it has no limits
-        effective_lower_r = lower_r
-        effective_upper_r = upper_r
-        tolerance_r = 1e-9 + 1e-9*abs(effective_lower_r) + 1e-9*abs(effective_upper_r)
-        lowest_r = -1e12 if unlimited_r else effective_lower_r - tolerance_r
-        highest_r = 1e12 if unlimited_r else effective_upper_r + tolerance_r
-        # at most one turn is inside the limits
-        single_r = (not unlimited_r) and (effective_upper_r - effective_lower_r <= 350.0 + tolerance_r)
-        mid_r = 0.5*effective_lower_r + 0.5*effective_upper_r
-        machine_scale = 1.0  # characteristic length of the machine
-        machine_scale_times_plane = 1e-6*machine_scale
-        return Constants(
-            direction_r=direction_r, offset_x=offset_x, offset_y=offset_y, offset_r=offset_r,
-            check_limits=check_limits, lower_x=effective_lower_x, upper_x=effective_upper_x, unlimited_x=unlimited_x,
-            lowest_x=lowest_x, highest_x=highest_x, lower_y=effective_lower_y, upper_y=effective_upper_y,
-            unlimited_y=unlimited_y, lowest_y=lowest_y, highest_y=highest_y, lower_r=effective_lower_r,
-            upper_r=effective_upper_r, unlimited_r=unlimited_r, lowest_r=lowest_r, highest_r=highest_r,
-            single_r=single_r, mid_r=mid_r, machine_scale=machine_scale,
-            machine_scale_times_plane=machine_scale_times_plane,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_x, axis_y, axis_r = axes
         k = self._constants
-        direction_r = k.direction_r
-        offset_r = k.offset_r
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_r <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
+        direction_r, offset_r, offset_x, offset_y = k.direction_r, k.offset_r, k.offset_x, k.offset_y
+        if not are_usable(axis_r, axis_x, axis_y):
             return Status.BAD_INPUT
         joint_x = axis_x - offset_x
         joint_y = axis_y - offset_y
-        r = DEGREE*(axis_r - offset_r)
+        r = DEGREE * (axis_r - offset_r)
         cos_r = cos(r)
         sin_r = sin(r)
-        direction_r_times_sin_r = direction_r*sin_r
+        direction_r_times_sin_r = direction_r * sin_r
         return (
             (joint_x, joint_y, 0.0),
             ((cos_r, -direction_r_times_sin_r, 0.0), (direction_r_times_sin_r, cos_r, 0.0), (0.0, 0.0, 1.0)),
@@ -283,19 +151,17 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         """The rotation of the frame."""
         axis_x, axis_y, axis_r = axes
         k = self._constants
-        direction_r = k.direction_r
-        offset_r = k.offset_r
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_r <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
+        direction_r, offset_r = k.direction_r, k.offset_r
+        if not are_usable(axis_r, axis_x, axis_y):
             return Status.BAD_INPUT
-        r = DEGREE*(axis_r - offset_r)
+        r = DEGREE * (axis_r - offset_r)
         cos_r = cos(r)
         sin_r = sin(r)
-        direction_r_times_sin_r = direction_r*sin_r
+        direction_r_times_sin_r = direction_r * sin_r
         return ((cos_r, -direction_r_times_sin_r, 0.0), (direction_r_times_sin_r, cos_r, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -303,20 +169,14 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         (turn_r,) = turns
         _, _, ref_r = reference
         k = self._constants
-        direction_r = k.direction_r
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_r = k.mid_r
-        offset_r = k.offset_r
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        single_r = k.single_r
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_r <= 1e9):
+        direction_r, machine_scale_times_plane, mid_r = k.direction_r, k.machine_scale_times_plane, k.mid_r
+        offset_r, offset_x, offset_y, single_r = k.offset_r, k.offset_x, k.offset_y, k.single_r
+        if not are_usable(x, y, z, ref_r):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
@@ -326,10 +186,10 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         axis_x = offset_x + x
         axis_y = offset_y + y
-        direction_y_r = direction_r*heading_across
+        direction_y_r = direction_r * heading_across
         open_r = mid_r if single_r else ref_r  # R: without a commanded turn, the value nearest to this
-        near_r = 360.0*(turn_r - 1 if turn_r > 0 else turn_r) if turn_r != 0 else open_r
-        axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0)/DEGREE  # R: whole turns added
+        near_r = 360.0 * (turn_r - 1 if turn_r > 0 else turn_r) if turn_r != 0 else open_r
+        axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0) / DEGREE  # R: whole turns added
         if not -180.000000001 <= axis_r - near_r < 179.999999999:
             axis_r = nearest_period(axis_r, near_r)
         return (axis_x, axis_y, axis_r)
@@ -338,44 +198,20 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         """The test of the limits."""
         axis_x, axis_y, axis_r = axes
         k = self._constants
-        highest_r = k.highest_r
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        lowest_r = k.lowest_r
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        # limits of R
-        if not (axis_r >= lowest_r):
-            missing = lowest_r - axis_r
-            if turn := turn_inside(axis_r, lowest_r, highest_r):
-                return Diagnosis(Status.UNREACHABLE, "R: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "R: below its lower limit [deg]", missing)
-        if not (axis_r <= highest_r):
-            missing = axis_r - highest_r
-            if turn := turn_inside(axis_r, lowest_r, highest_r):
-                return Diagnosis(Status.UNREACHABLE, "R: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "R: above its upper limit [deg]", missing)
-        # limits of X
-        if not (axis_x >= lowest_x):
-            missing = lowest_x - axis_x
-            return Diagnosis(Status.UNREACHABLE, "X: below its lower limit [u]", missing)
-        if not (axis_x <= highest_x):
-            missing = axis_x - highest_x
-            return Diagnosis(Status.UNREACHABLE, "X: above its upper limit [u]", missing)
-        # limits of Y
-        if not (axis_y >= lowest_y):
-            missing = lowest_y - axis_y
-            return Diagnosis(Status.UNREACHABLE, "Y: below its lower limit [u]", missing)
-        if not (axis_y <= highest_y):
-            missing = axis_y - highest_y
-            return Diagnosis(Status.UNREACHABLE, "Y: above its upper limit [u]", missing)
+        highest_r, highest_x, highest_y, lowest_r = k.highest_r, k.highest_x, k.highest_y, k.lowest_r
+        lowest_x, lowest_y = k.lowest_x, k.lowest_y
+        if not lowest_r <= axis_r <= highest_r:
+            return beyond_turn("R", axis_r, lowest_r, highest_r)
+        if not lowest_x <= axis_x <= highest_x:
+            return beyond("X", axis_x, lowest_x, highest_x, "u")
+        if not lowest_y <= axis_y <= highest_y:
+            return beyond("Y", axis_y, lowest_y, highest_y, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_x, axis_y, axis_r = axes
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_r <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
+        if not are_usable(axis_r, axis_x, axis_y):
             return Status.BAD_INPUT
         return ()
 
@@ -384,8 +220,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         axis_x, axis_y, axis_r = axes
         k = self._constants
         direction_r = k.direction_r
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_r <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
+        if not are_usable(axis_r, axis_x, axis_y):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, direction_r))
 
@@ -398,8 +233,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         axis_x, axis_y, axis_r = axes
         k = self._constants
         direction_r = k.direction_r
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_r <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
+        if not are_usable(axis_r, axis_x, axis_y):
             return Status.BAD_INPUT
         return (
             (1.0, 0.0, 0.0),
@@ -416,47 +250,40 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        cos_heading = heading_along/heading_length
-        sin_heading = heading_across/heading_length
+        cos_heading = heading_along / heading_length
+        sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
         _, _, ref_r = reference
         k = self._constants
-        direction_r = k.direction_r
-        machine_scale_times_plane = k.machine_scale_times_plane
-        offset_r = k.offset_r
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_r <= 1e9
-        ):
+        direction_r, machine_scale_times_plane, offset_r = k.direction_r, k.machine_scale_times_plane, k.offset_r
+        offset_x, offset_y = k.offset_x, k.offset_y
+        if not are_usable(x, y, z, point_x, point_y, point_z, ref_r):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        free_r = (ref_r - offset_r)*DEGREE
+        free_r = (ref_r - offset_r) * DEGREE
         cos_r = cos(free_r)
         sin_r = sin(free_r)
-        direction_r_times_sin_r = direction_r*sin_r
+        direction_r_times_sin_r = direction_r * sin_r
         # commanded point, in the frame of the last moving joint
-        tool_x = point_x*cos_r - direction_r_times_sin_r*point_y
+        tool_x = point_x * cos_r - direction_r_times_sin_r * point_y
         joint_x = x - tool_x  # joint_x from the x equation, which is linear in it
         axis_x = joint_x + offset_x
         # commanded point, in the frame of the last moving joint
-        tool_y = point_y*cos_r + direction_r_times_sin_r*point_x
+        tool_y = point_y * cos_r + direction_r_times_sin_r * point_x
         joint_y = y - tool_y  # joint_y from the y equation, which is linear in it
         axis_y = joint_y + offset_y
         return (axis_x, axis_y, ref_r)
@@ -464,24 +291,31 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_x, axis_y, axis_r = axes
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_r <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
+        if not are_usable(axis_r, axis_x, axis_y):
             return Status.BAD_INPUT
         return ()
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        """The one branch: see `Mechanism.branches`."""
+        return (self.branch(frame, (), reference),)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        solve = self._one_trusted
-        return solve(frame, signs, reference)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
+        k = self._constants
+        direction_r, machine_scale_times_plane, offset_r = k.direction_r, k.machine_scale_times_plane, k.offset_r
+        offset_x, offset_y = k.offset_x, k.offset_y
+        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        heading_along = r11 + r22
+        heading_across = r21 - r12
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
+        # the tool points exactly the opposite way
+        if not (heading_length > 1e-11):
+            return None
+        # z: a planar machine has none
+        if not (abs(z) <= machine_scale_times_plane):
+            return None
+        return (offset_x + x, offset_y + y, offset_r + arctan2(direction_r * heading_across, heading_along) * RADIAN)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -22,7 +22,8 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     forward: 4280 additions, 5562 multiplications, 600 divisions, 140 square roots, 120 sines
     inverse: 224 additions, 303 multiplications, 21 divisions, 8 square roots, 2 sines
     repair of a frame, more: 32 additions, 45 multiplications, 9 divisions, 2 square roots, 0 sines
-    Newton's method: every pass improves the pose until all legs have their lengths: at most 20 passes, all of which are counted
+    Newton's method: every pass improves the pose until all legs have their lengths: at most 20 passes, all of
+    which are counted
 
 Six lengths allow up to 40 poses. Forward kinematics finds the one in the assembly mode of the home pose, by
 Newton's method from there; it refuses where that does not converge in 20 passes. On six machines of different
@@ -46,170 +47,304 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._core import Image, Pose
-from softkin._scalar import DEGREE, arctan2, cos, root, sin, solve, sqrt
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, root, sin, solve, sqrt
 from softkin._start import IterativeForward
-from softkin._types import (
-    Axis,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Values,
-    Vector,
-)
-from softkin._unrolled.hexapod import unrolled
+from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import StartedPrograms
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Values, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    base_1_x: float
-    base_1_y: float
-    base_1_z: float
-    base_2_x: float
-    base_2_y: float
-    base_2_z: float
-    base_3_x: float
-    base_3_y: float
-    base_3_z: float
-    base_4_x: float
-    base_4_y: float
-    base_4_z: float
-    base_5_x: float
-    base_5_y: float
-    base_5_z: float
-    base_6_x: float
-    base_6_y: float
-    base_6_z: float
-    platform_1_x: float
-    platform_1_y: float
-    platform_1_z: float
-    platform_2_x: float
-    platform_2_y: float
-    platform_2_z: float
-    platform_3_x: float
-    platform_3_y: float
-    platform_3_z: float
-    platform_4_x: float
-    platform_4_y: float
-    platform_4_z: float
-    platform_5_x: float
-    platform_5_y: float
-    platform_5_z: float
-    platform_6_x: float
-    platform_6_y: float
-    platform_6_z: float
-    home_x: float
-    home_y: float
-    home_z: float
-    home_roll: float
-    home_pitch: float
-    home_yaw: float
-    max_angle_base_joint: float
-    max_angle_platform_joint: float
-    offset_l1: float
-    offset_l2: float
-    offset_l3: float
-    offset_l4: float
-    offset_l5: float
-    offset_l6: float
-    min_type2_margin: float
-    check_limits: bool
-    lower_l1: float
-    upper_l1: float
-    unlimited_l1: bool
-    lowest_l1: float
-    highest_l1: float
-    lower_l2: float
-    upper_l2: float
-    unlimited_l2: bool
-    lowest_l2: float
-    highest_l2: float
-    lower_l3: float
-    upper_l3: float
-    unlimited_l3: bool
-    lowest_l3: float
-    highest_l3: float
-    lower_l4: float
-    upper_l4: float
-    unlimited_l4: bool
-    lowest_l4: float
-    highest_l4: float
-    lower_l5: float
-    upper_l5: float
-    unlimited_l5: bool
-    lowest_l5: float
-    highest_l5: float
-    lower_l6: float
-    upper_l6: float
-    unlimited_l6: bool
-    lowest_l6: float
-    highest_l6: float
-    home_r11: float
-    home_r12: float
-    home_r13: float
-    home_r21: float
-    home_r22: float
-    home_r23: float
-    home_r31: float
-    home_r32: float
-    home_r33: float
-    platform_radius: float
-    machine_scale: float
-    assembly_sign: float
-    home_along_1_x: float
-    home_along_1_y: float
-    home_along_1_z: float
-    plate_axis_1_x: float
-    plate_axis_1_y: float
-    plate_axis_1_z: float
-    home_along_2_x: float
-    home_along_2_y: float
-    home_along_2_z: float
-    plate_axis_2_x: float
-    plate_axis_2_y: float
-    plate_axis_2_z: float
-    home_along_3_x: float
-    home_along_3_y: float
-    home_along_3_z: float
-    plate_axis_3_x: float
-    plate_axis_3_y: float
-    plate_axis_3_z: float
-    home_along_4_x: float
-    home_along_4_y: float
-    home_along_4_z: float
-    plate_axis_4_x: float
-    plate_axis_4_y: float
-    plate_axis_4_z: float
-    home_along_5_x: float
-    home_along_5_y: float
-    home_along_5_z: float
-    plate_axis_5_x: float
-    plate_axis_5_y: float
-    plate_axis_5_z: float
-    home_along_6_x: float
-    home_along_6_y: float
-    home_along_6_z: float
-    plate_axis_6_x: float
-    plate_axis_6_y: float
-    plate_axis_6_z: float
-    within: float
-    least_cos_base: float
-    least_cos_plate: float
-    machine_scale_times_shortest_link: float
-    machine_scale_squared: float
-    one_by_platform_radius: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        base_1_x, base_1_y, base_1_z, base_2_x = p["base_1_x"], p["base_1_y"], p["base_1_z"], p["base_2_x"]
+        base_2_y, base_2_z, base_3_x, base_3_y = p["base_2_y"], p["base_2_z"], p["base_3_x"], p["base_3_y"]
+        base_3_z, base_4_x, base_4_y, base_4_z = p["base_3_z"], p["base_4_x"], p["base_4_y"], p["base_4_z"]
+        base_5_x, base_5_y, base_5_z, base_6_x = p["base_5_x"], p["base_5_y"], p["base_5_z"], p["base_6_x"]
+        base_6_y, base_6_z, platform_1_x = p["base_6_y"], p["base_6_z"], p["platform_1_x"]
+        platform_1_y, platform_1_z, platform_2_x = p["platform_1_y"], p["platform_1_z"], p["platform_2_x"]
+        platform_2_y, platform_2_z, platform_3_x = p["platform_2_y"], p["platform_2_z"], p["platform_3_x"]
+        platform_3_y, platform_3_z, platform_4_x = p["platform_3_y"], p["platform_3_z"], p["platform_4_x"]
+        platform_4_y, platform_4_z, platform_5_x = p["platform_4_y"], p["platform_4_z"], p["platform_5_x"]
+        platform_5_y, platform_5_z, platform_6_x = p["platform_5_y"], p["platform_5_z"], p["platform_6_x"]
+        platform_6_y, platform_6_z, home_x, home_y = p["platform_6_y"], p["platform_6_z"], p["home_x"], p["home_y"]
+        home_z, home_roll, home_pitch, home_yaw = p["home_z"], p["home_roll"], p["home_pitch"], p["home_yaw"]
+        max_angle_base_joint, max_angle_platform_joint = p["max_angle_base_joint"], p["max_angle_platform_joint"]
+        offset_l1, offset_l2, offset_l3, offset_l4 = p["offset_l1"], p["offset_l2"], p["offset_l3"], p["offset_l4"]
+        offset_l5, offset_l6, min_type2_margin = p["offset_l5"], p["offset_l6"], p["min_type2_margin"]
+        self.lowest_l1, self.highest_l1, *_ = machine._window("l1", (offset_l1, 1e9 + offset_l1))
+        self.lowest_l2, self.highest_l2, *_ = machine._window("l2", (offset_l2, 1e9 + offset_l2))
+        self.lowest_l3, self.highest_l3, *_ = machine._window("l3", (offset_l3, 1e9 + offset_l3))
+        self.lowest_l4, self.highest_l4, *_ = machine._window("l4", (offset_l4, 1e9 + offset_l4))
+        self.lowest_l5, self.highest_l5, *_ = machine._window("l5", (offset_l5, 1e9 + offset_l5))
+        self.lowest_l6, self.highest_l6, *_ = machine._window("l6", (offset_l6, 1e9 + offset_l6))
+        cos_home_roll = cos(DEGREE * home_roll)
+        sin_home_roll = sin(DEGREE * home_roll)
+        cos_home_pitch = cos(DEGREE * home_pitch)
+        sin_home_pitch = sin(DEGREE * home_pitch)
+        cos_home_yaw = cos(DEGREE * home_yaw)
+        sin_home_yaw = sin(DEGREE * home_yaw)
+        home_r11 = cos_home_pitch * cos_home_yaw
+        home_r12 = cos_home_yaw * sin_home_pitch * sin_home_roll - cos_home_roll * sin_home_yaw
+        home_r13 = sin_home_roll * sin_home_yaw + cos_home_roll * cos_home_yaw * sin_home_pitch
+        home_r21 = cos_home_pitch * sin_home_yaw
+        home_r22 = cos_home_roll * cos_home_yaw + sin_home_pitch * sin_home_roll * sin_home_yaw
+        home_r23 = cos_home_roll * sin_home_pitch * sin_home_yaw - cos_home_yaw * sin_home_roll
+        home_r31 = -sin_home_pitch
+        home_r32 = cos_home_pitch * sin_home_roll
+        home_r33 = cos_home_pitch * cos_home_roll
+        home_arm_1_x = home_r11 * platform_1_x + home_r12 * platform_1_y + home_r13 * platform_1_z
+        home_arm_1_y = home_r21 * platform_1_x + home_r22 * platform_1_y + home_r23 * platform_1_z
+        home_arm_1_z = home_r31 * platform_1_x + home_r32 * platform_1_y + home_r33 * platform_1_z
+        home_arm_2_x = home_r11 * platform_2_x + home_r12 * platform_2_y + home_r13 * platform_2_z
+        home_arm_2_y = home_r21 * platform_2_x + home_r22 * platform_2_y + home_r23 * platform_2_z
+        home_arm_2_z = home_r31 * platform_2_x + home_r32 * platform_2_y + home_r33 * platform_2_z
+        home_arm_3_x = home_r11 * platform_3_x + home_r12 * platform_3_y + home_r13 * platform_3_z
+        home_arm_3_y = home_r21 * platform_3_x + home_r22 * platform_3_y + home_r23 * platform_3_z
+        home_arm_3_z = home_r31 * platform_3_x + home_r32 * platform_3_y + home_r33 * platform_3_z
+        home_arm_4_x = home_r11 * platform_4_x + home_r12 * platform_4_y + home_r13 * platform_4_z
+        home_arm_4_y = home_r21 * platform_4_x + home_r22 * platform_4_y + home_r23 * platform_4_z
+        home_arm_4_z = home_r31 * platform_4_x + home_r32 * platform_4_y + home_r33 * platform_4_z
+        home_arm_5_x = home_r11 * platform_5_x + home_r12 * platform_5_y + home_r13 * platform_5_z
+        home_arm_5_y = home_r21 * platform_5_x + home_r22 * platform_5_y + home_r23 * platform_5_z
+        home_arm_5_z = home_r31 * platform_5_x + home_r32 * platform_5_y + home_r33 * platform_5_z
+        home_arm_6_x = home_r11 * platform_6_x + home_r12 * platform_6_y + home_r13 * platform_6_z
+        home_arm_6_y = home_r21 * platform_6_x + home_r22 * platform_6_y + home_r23 * platform_6_z
+        home_arm_6_z = home_r31 * platform_6_x + home_r32 * platform_6_y + home_r33 * platform_6_z
+        # centre of the joints on the platform
+        centre_x = (
+            platform_1_x / 6.0
+            + platform_2_x / 6.0
+            + platform_3_x / 6.0
+            + platform_4_x / 6.0
+            + platform_5_x / 6.0
+            + platform_6_x / 6.0
+        )
+        # centre of the joints on the platform
+        centre_y = (
+            platform_1_y / 6.0
+            + platform_2_y / 6.0
+            + platform_3_y / 6.0
+            + platform_4_y / 6.0
+            + platform_5_y / 6.0
+            + platform_6_y / 6.0
+        )
+        # centre of the joints on the platform
+        centre_z = (
+            platform_1_z / 6.0
+            + platform_2_z / 6.0
+            + platform_3_z / 6.0
+            + platform_4_z / 6.0
+            + platform_5_z / 6.0
+            + platform_6_z / 6.0
+        )
+        # root mean square of their distances from it
+        spread = root(
+            (platform_1_x - centre_x) * (platform_1_x - centre_x) / 6.0
+            + (platform_2_x - centre_x) * (platform_2_x - centre_x) / 6.0
+            + (platform_3_x - centre_x) * (platform_3_x - centre_x) / 6.0
+            + (platform_4_x - centre_x) * (platform_4_x - centre_x) / 6.0
+            + (platform_5_x - centre_x) * (platform_5_x - centre_x) / 6.0
+            + (platform_6_x - centre_x) * (platform_6_x - centre_x) / 6.0
+            + (platform_1_y - centre_y) * (platform_1_y - centre_y) / 6.0
+            + (platform_2_y - centre_y) * (platform_2_y - centre_y) / 6.0
+            + (platform_3_y - centre_y) * (platform_3_y - centre_y) / 6.0
+            + (platform_4_y - centre_y) * (platform_4_y - centre_y) / 6.0
+            + (platform_5_y - centre_y) * (platform_5_y - centre_y) / 6.0
+            + (platform_6_y - centre_y) * (platform_6_y - centre_y) / 6.0
+            + (platform_1_z - centre_z) * (platform_1_z - centre_z) / 6.0
+            + (platform_2_z - centre_z) * (platform_2_z - centre_z) / 6.0
+            + (platform_3_z - centre_z) * (platform_3_z - centre_z) / 6.0
+            + (platform_4_z - centre_z) * (platform_4_z - centre_z) / 6.0
+            + (platform_5_z - centre_z) * (platform_5_z - centre_z) / 6.0
+            + (platform_6_z - centre_z) * (platform_6_z - centre_z) / 6.0
+        )
+        platform_radius = spread if spread > 0.0 else 1.0
+        # leg 1: vector from its joint on the base to its joint on the platform
+        span_1_x = home_arm_1_x + home_x - base_1_x
+        span_1_y = home_arm_1_y + home_y - base_1_y
+        span_1_z = home_arm_1_z + home_z - base_1_z
+        # leg 2: vector from its joint on the base to its joint on the platform
+        span_2_x = home_arm_2_x + home_x - base_2_x
+        span_2_y = home_arm_2_y + home_y - base_2_y
+        span_2_z = home_arm_2_z + home_z - base_2_z
+        # leg 3: vector from its joint on the base to its joint on the platform
+        span_3_x = home_arm_3_x + home_x - base_3_x
+        span_3_y = home_arm_3_y + home_y - base_3_y
+        span_3_z = home_arm_3_z + home_z - base_3_z
+        # leg 4: vector from its joint on the base to its joint on the platform
+        span_4_x = home_arm_4_x + home_x - base_4_x
+        span_4_y = home_arm_4_y + home_y - base_4_y
+        span_4_z = home_arm_4_z + home_z - base_4_z
+        # leg 5: vector from its joint on the base to its joint on the platform
+        span_5_x = home_arm_5_x + home_x - base_5_x
+        span_5_y = home_arm_5_y + home_y - base_5_y
+        span_5_z = home_arm_5_z + home_z - base_5_z
+        # leg 6: vector from its joint on the base to its joint on the platform
+        span_6_x = home_arm_6_x + home_x - base_6_x
+        span_6_y = home_arm_6_y + home_y - base_6_y
+        span_6_z = home_arm_6_z + home_z - base_6_z
+        length_1 = sqrt(span_1_x * span_1_x + span_1_y * span_1_y + span_1_z * span_1_z)
+        length_2 = sqrt(span_2_x * span_2_x + span_2_y * span_2_y + span_2_z * span_2_z)
+        length_3 = sqrt(span_3_x * span_3_x + span_3_y * span_3_y + span_3_z * span_3_z)
+        length_4 = sqrt(span_4_x * span_4_x + span_4_y * span_4_y + span_4_z * span_4_z)
+        length_5 = sqrt(span_5_x * span_5_x + span_5_y * span_5_y + span_5_z * span_5_z)
+        length_6 = sqrt(span_6_x * span_6_x + span_6_y * span_6_y + span_6_z * span_6_z)
+        # characteristic length: mean leg, radius of the platform
+        machine_scale = (
+            length_1 / 6.0
+            + length_2 / 6.0
+            + length_3 / 6.0
+            + length_4 / 6.0
+            + length_5 / 6.0
+            + length_6 / 6.0
+            + platform_radius
+        )
+        if not (
+            length_1 > 1e-9 * machine_scale
+            and length_2 > 1e-9 * machine_scale
+            and length_3 > 1e-9 * machine_scale
+            and length_4 > 1e-9 * machine_scale
+            and length_5 > 1e-9 * machine_scale
+            and length_6 > 1e-9 * machine_scale
+            and spread > 1e-9 * machine_scale
+        ):
+            raise machine._refusal("legs that have a length at the home pose, and joints that are apart")
+        # leg 1 as a line: unit vector, and its moment about the platform's origin
+        divisor_1 = length_1 if length_1 > 1e-9 * machine_scale else 1.0
+        along_1_x = span_1_x / divisor_1
+        along_1_y = span_1_y / divisor_1
+        along_1_z = span_1_z / divisor_1
+        moment_1_x = (along_1_z * home_arm_1_y - along_1_y * home_arm_1_z) / platform_radius
+        moment_1_y = (along_1_x * home_arm_1_z - along_1_z * home_arm_1_x) / platform_radius
+        moment_1_z = (along_1_y * home_arm_1_x - along_1_x * home_arm_1_y) / platform_radius
+        # leg 2 as a line: unit vector, and its moment about the platform's origin
+        divisor_2 = length_2 if length_2 > 1e-9 * machine_scale else 1.0
+        along_2_x = span_2_x / divisor_2
+        along_2_y = span_2_y / divisor_2
+        along_2_z = span_2_z / divisor_2
+        moment_2_x = (along_2_z * home_arm_2_y - along_2_y * home_arm_2_z) / platform_radius
+        moment_2_y = (along_2_x * home_arm_2_z - along_2_z * home_arm_2_x) / platform_radius
+        moment_2_z = (along_2_y * home_arm_2_x - along_2_x * home_arm_2_y) / platform_radius
+        # leg 3 as a line: unit vector, and its moment about the platform's origin
+        divisor_3 = length_3 if length_3 > 1e-9 * machine_scale else 1.0
+        along_3_x = span_3_x / divisor_3
+        along_3_y = span_3_y / divisor_3
+        along_3_z = span_3_z / divisor_3
+        moment_3_x = (along_3_z * home_arm_3_y - along_3_y * home_arm_3_z) / platform_radius
+        moment_3_y = (along_3_x * home_arm_3_z - along_3_z * home_arm_3_x) / platform_radius
+        moment_3_z = (along_3_y * home_arm_3_x - along_3_x * home_arm_3_y) / platform_radius
+        # leg 4 as a line: unit vector, and its moment about the platform's origin
+        divisor_4 = length_4 if length_4 > 1e-9 * machine_scale else 1.0
+        along_4_x = span_4_x / divisor_4
+        along_4_y = span_4_y / divisor_4
+        along_4_z = span_4_z / divisor_4
+        moment_4_x = (along_4_z * home_arm_4_y - along_4_y * home_arm_4_z) / platform_radius
+        moment_4_y = (along_4_x * home_arm_4_z - along_4_z * home_arm_4_x) / platform_radius
+        moment_4_z = (along_4_y * home_arm_4_x - along_4_x * home_arm_4_y) / platform_radius
+        # leg 5 as a line: unit vector, and its moment about the platform's origin
+        divisor_5 = length_5 if length_5 > 1e-9 * machine_scale else 1.0
+        along_5_x = span_5_x / divisor_5
+        along_5_y = span_5_y / divisor_5
+        along_5_z = span_5_z / divisor_5
+        moment_5_x = (along_5_z * home_arm_5_y - along_5_y * home_arm_5_z) / platform_radius
+        moment_5_y = (along_5_x * home_arm_5_z - along_5_z * home_arm_5_x) / platform_radius
+        moment_5_z = (along_5_y * home_arm_5_x - along_5_x * home_arm_5_y) / platform_radius
+        # leg 6 as a line: unit vector, and its moment about the platform's origin
+        divisor_6 = length_6 if length_6 > 1e-9 * machine_scale else 1.0
+        along_6_x = span_6_x / divisor_6
+        along_6_y = span_6_y / divisor_6
+        along_6_z = span_6_z / divisor_6
+        moment_6_x = (along_6_z * home_arm_6_y - along_6_y * home_arm_6_z) / platform_radius
+        moment_6_y = (along_6_x * home_arm_6_z - along_6_z * home_arm_6_x) / platform_radius
+        moment_6_z = (along_6_y * home_arm_6_x - along_6_x * home_arm_6_y) / platform_radius
+        plate_axis_1_x = along_1_x * home_r11 + along_1_y * home_r21 + along_1_z * home_r31
+        plate_axis_1_y = along_1_x * home_r12 + along_1_y * home_r22 + along_1_z * home_r32
+        plate_axis_1_z = along_1_x * home_r13 + along_1_y * home_r23 + along_1_z * home_r33
+        plate_axis_2_x = along_2_x * home_r11 + along_2_y * home_r21 + along_2_z * home_r31
+        plate_axis_2_y = along_2_x * home_r12 + along_2_y * home_r22 + along_2_z * home_r32
+        plate_axis_2_z = along_2_x * home_r13 + along_2_y * home_r23 + along_2_z * home_r33
+        plate_axis_3_x = along_3_x * home_r11 + along_3_y * home_r21 + along_3_z * home_r31
+        plate_axis_3_y = along_3_x * home_r12 + along_3_y * home_r22 + along_3_z * home_r32
+        plate_axis_3_z = along_3_x * home_r13 + along_3_y * home_r23 + along_3_z * home_r33
+        plate_axis_4_x = along_4_x * home_r11 + along_4_y * home_r21 + along_4_z * home_r31
+        plate_axis_4_y = along_4_x * home_r12 + along_4_y * home_r22 + along_4_z * home_r32
+        plate_axis_4_z = along_4_x * home_r13 + along_4_y * home_r23 + along_4_z * home_r33
+        plate_axis_5_x = along_5_x * home_r11 + along_5_y * home_r21 + along_5_z * home_r31
+        plate_axis_5_y = along_5_x * home_r12 + along_5_y * home_r22 + along_5_z * home_r32
+        plate_axis_5_z = along_5_x * home_r13 + along_5_y * home_r23 + along_5_z * home_r33
+        plate_axis_6_x = along_6_x * home_r11 + along_6_y * home_r21 + along_6_z * home_r31
+        plate_axis_6_y = along_6_x * home_r12 + along_6_y * home_r22 + along_6_z * home_r32
+        plate_axis_6_z = along_6_x * home_r13 + along_6_y * home_r23 + along_6_z * home_r33
+        # determinant at the home pose: zero where the legs do not hold the platform
+        (determinant,) = solve(
+            (
+                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
+                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
+                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
+                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
+                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
+                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+            ),
+            (),
+        )
+        if not (abs(determinant) > 0.001):
+            raise machine._refusal("a home pose at which the legs hold the platform")
+        assembly_sign = 1.0 if determinant > 0.0 else -1.0  # assembly mode of this machine
+        within = 1e-11 * machine_scale  # tolerance of the leg lengths
+        # least cosine of a leg's lean on the base
+        least_cos_base = (
+            cos(DEGREE * max_angle_base_joint) - 1e-12 if cos(DEGREE * max_angle_base_joint) > -0.999999999999 else -2.0
+        )
+        # least cosine of a leg's lean on the plate
+        least_cos_plate = (
+            cos(DEGREE * max_angle_platform_joint) - 1e-12
+            if cos(DEGREE * max_angle_platform_joint) > -0.999999999999
+            else -2.0
+        )
+        machine_scale_times_shortest_link = 1e-9 * machine_scale
+        machine_scale_squared = machine_scale * machine_scale
+        one_by_platform_radius = 1.0 / platform_radius
+        self.base_1_x, self.base_1_y, self.base_1_z, self.base_2_x = base_1_x, base_1_y, base_1_z, base_2_x
+        self.base_2_y, self.base_2_z, self.base_3_x, self.base_3_y = base_2_y, base_2_z, base_3_x, base_3_y
+        self.base_3_z, self.base_4_x, self.base_4_y, self.base_4_z = base_3_z, base_4_x, base_4_y, base_4_z
+        self.base_5_x, self.base_5_y, self.base_5_z, self.base_6_x = base_5_x, base_5_y, base_5_z, base_6_x
+        self.base_6_y, self.base_6_z, self.platform_1_x = base_6_y, base_6_z, platform_1_x
+        self.platform_1_y, self.platform_1_z, self.platform_2_x = platform_1_y, platform_1_z, platform_2_x
+        self.platform_2_y, self.platform_2_z, self.platform_3_x = platform_2_y, platform_2_z, platform_3_x
+        self.platform_3_y, self.platform_3_z, self.platform_4_x = platform_3_y, platform_3_z, platform_4_x
+        self.platform_4_y, self.platform_4_z, self.platform_5_x = platform_4_y, platform_4_z, platform_5_x
+        self.platform_5_y, self.platform_5_z, self.platform_6_x = platform_5_y, platform_5_z, platform_6_x
+        self.platform_6_y, self.platform_6_z, self.home_x, self.home_y = platform_6_y, platform_6_z, home_x, home_y
+        self.home_z, self.offset_l1, self.offset_l2, self.offset_l3 = home_z, offset_l1, offset_l2, offset_l3
+        self.offset_l4, self.offset_l5, self.offset_l6 = offset_l4, offset_l5, offset_l6
+        self.min_type2_margin, self.home_r11, self.home_r12 = min_type2_margin, home_r11, home_r12
+        self.home_r13, self.home_r21, self.home_r22, self.home_r23 = home_r13, home_r21, home_r22, home_r23
+        self.home_r31, self.home_r32, self.home_r33, self.assembly_sign = home_r31, home_r32, home_r33, assembly_sign
+        self.home_along_1_x, self.home_along_1_y, self.home_along_1_z = along_1_x, along_1_y, along_1_z
+        self.plate_axis_1_x, self.plate_axis_1_y, self.plate_axis_1_z = plate_axis_1_x, plate_axis_1_y, plate_axis_1_z
+        self.home_along_2_x, self.home_along_2_y, self.home_along_2_z = along_2_x, along_2_y, along_2_z
+        self.plate_axis_2_x, self.plate_axis_2_y, self.plate_axis_2_z = plate_axis_2_x, plate_axis_2_y, plate_axis_2_z
+        self.home_along_3_x, self.home_along_3_y, self.home_along_3_z = along_3_x, along_3_y, along_3_z
+        self.plate_axis_3_x, self.plate_axis_3_y, self.plate_axis_3_z = plate_axis_3_x, plate_axis_3_y, plate_axis_3_z
+        self.home_along_4_x, self.home_along_4_y, self.home_along_4_z = along_4_x, along_4_y, along_4_z
+        self.plate_axis_4_x, self.plate_axis_4_y, self.plate_axis_4_z = plate_axis_4_x, plate_axis_4_y, plate_axis_4_z
+        self.home_along_5_x, self.home_along_5_y, self.home_along_5_z = along_5_x, along_5_y, along_5_z
+        self.plate_axis_5_x, self.plate_axis_5_y, self.plate_axis_5_z = plate_axis_5_x, plate_axis_5_y, plate_axis_5_z
+        self.home_along_6_x, self.home_along_6_y, self.home_along_6_z = along_6_x, along_6_y, along_6_z
+        self.plate_axis_6_x, self.plate_axis_6_y, self.plate_axis_6_z = plate_axis_6_x, plate_axis_6_y, plate_axis_6_z
+        self.within, self.least_cos_base, self.least_cos_plate = within, least_cos_base, least_cos_plate
+        self.machine_scale_times_shortest_link = machine_scale_times_shortest_link
+        self.machine_scale_squared, self.one_by_platform_radius = machine_scale_squared, one_by_platform_radius
 
 
 class Hexapod(IterativeForward):
@@ -218,7 +353,7 @@ class Hexapod(IterativeForward):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_constants",)
 
     NAME = "Kin_Hexapod"
     AXES = (
@@ -230,315 +365,112 @@ class Hexapod(IterativeForward):
         Axis(name="L6", kind="linear", unit="u", meaning="Length of leg 6, between its joints", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="base_1_x", kind="distance", unit="u",
-            meaning="X of the base joint of leg 1, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_1_y", kind="distance", unit="u",
-            meaning="Y of the base joint of leg 1, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_1_z", kind="distance", unit="u",
-            meaning="Z of the base joint of leg 1, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="base_2_x", kind="distance", unit="u",
-            meaning="X of the base joint of leg 2, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_2_y", kind="distance", unit="u",
-            meaning="Y of the base joint of leg 2, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_2_z", kind="distance", unit="u",
-            meaning="Z of the base joint of leg 2, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="base_3_x", kind="distance", unit="u",
-            meaning="X of the base joint of leg 3, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_3_y", kind="distance", unit="u",
-            meaning="Y of the base joint of leg 3, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_3_z", kind="distance", unit="u",
-            meaning="Z of the base joint of leg 3, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="base_4_x", kind="distance", unit="u",
-            meaning="X of the base joint of leg 4, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_4_y", kind="distance", unit="u",
-            meaning="Y of the base joint of leg 4, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_4_z", kind="distance", unit="u",
-            meaning="Z of the base joint of leg 4, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="base_5_x", kind="distance", unit="u",
-            meaning="X of the base joint of leg 5, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_5_y", kind="distance", unit="u",
-            meaning="Y of the base joint of leg 5, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_5_z", kind="distance", unit="u",
-            meaning="Z of the base joint of leg 5, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="base_6_x", kind="distance", unit="u",
-            meaning="X of the base joint of leg 6, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_6_y", kind="distance", unit="u",
-            meaning="Y of the base joint of leg 6, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="base_6_z", kind="distance", unit="u",
-            meaning="Z of the base joint of leg 6, in the frame of the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="platform_1_x", kind="distance", unit="u",
-            meaning="X of the platform joint of leg 1, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_1_y", kind="distance", unit="u",
-            meaning="Y of the platform joint of leg 1, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_1_z", kind="distance", unit="u",
-            meaning="Z of the platform joint of leg 1, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="platform_2_x", kind="distance", unit="u",
-            meaning="X of the platform joint of leg 2, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_2_y", kind="distance", unit="u",
-            meaning="Y of the platform joint of leg 2, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_2_z", kind="distance", unit="u",
-            meaning="Z of the platform joint of leg 2, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="platform_3_x", kind="distance", unit="u",
-            meaning="X of the platform joint of leg 3, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_3_y", kind="distance", unit="u",
-            meaning="Y of the platform joint of leg 3, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_3_z", kind="distance", unit="u",
-            meaning="Z of the platform joint of leg 3, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="platform_4_x", kind="distance", unit="u",
-            meaning="X of the platform joint of leg 4, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_4_y", kind="distance", unit="u",
-            meaning="Y of the platform joint of leg 4, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_4_z", kind="distance", unit="u",
-            meaning="Z of the platform joint of leg 4, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="platform_5_x", kind="distance", unit="u",
-            meaning="X of the platform joint of leg 5, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_5_y", kind="distance", unit="u",
-            meaning="Y of the platform joint of leg 5, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_5_z", kind="distance", unit="u",
-            meaning="Z of the platform joint of leg 5, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="platform_6_x", kind="distance", unit="u",
-            meaning="X of the platform joint of leg 6, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_6_y", kind="distance", unit="u",
-            meaning="Y of the platform joint of leg 6, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="platform_6_z", kind="distance", unit="u",
-            meaning="Z of the platform joint of leg 6, in the frame of the platform", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="home_x", kind="distance", unit="u", meaning="X of the platform at its home pose",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="home_y", kind="distance", unit="u", meaning="Y of the platform at its home pose",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="home_z", kind="distance", unit="u", meaning="Z of the platform at its home pose",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="home_roll", kind="angle", unit="deg",
-            meaning="Roll of the home pose: Rz(yaw) Ry(pitch) Rx(roll)", low=-360.0, high=360.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="home_pitch", kind="angle", unit="deg",
-            meaning="Pitch of the home pose: Rz(yaw) Ry(pitch) Rx(roll)", low=-360.0, high=360.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="home_yaw", kind="angle", unit="deg", meaning="Yaw of the home pose: Rz(yaw) Ry(pitch) Rx(roll)",
-            low=-360.0, high=360.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="max_angle_base_joint", kind="angle", unit="deg",
-            meaning="Largest lean of a leg from home, at the base; 180: no bound", low=0.0, high=180.0,
-            low_is_open=False, default=180.0,
-        ),
-        Parameter(
-            name="max_angle_platform_joint", kind="angle", unit="deg",
-            meaning="Largest lean of a leg from home, at the platform; 180: no bound", low=0.0, high=180.0,
-            low_is_open=False, default=180.0,
-        ),
-        Parameter(
-            name="offset_l1", kind="distance", unit="u", meaning="L1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_l2", kind="distance", unit="u", meaning="L2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_l3", kind="distance", unit="u", meaning="L3: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_l4", kind="distance", unit="u", meaning="L4: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_l5", kind="distance", unit="u", meaning="L5: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_l6", kind="distance", unit="u", meaning="L6: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_l1", kind="distance", unit="u",
-            meaning="L1: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_l1", kind="distance", unit="u",
-            meaning="L1: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_l2", kind="distance", unit="u",
-            meaning="L2: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_l2", kind="distance", unit="u",
-            meaning="L2: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_l3", kind="distance", unit="u",
-            meaning="L3: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_l3", kind="distance", unit="u",
-            meaning="L3: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_l4", kind="distance", unit="u",
-            meaning="L4: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_l4", kind="distance", unit="u",
-            meaning="L4: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_l5", kind="distance", unit="u",
-            meaning="L5: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_l5", kind="distance", unit="u",
-            meaning="L5: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_l6", kind="distance", unit="u",
-            meaning="L6: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_l6", kind="distance", unit="u",
-            meaning="L6: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
-            low_is_open=False, default=0.001,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("distance", "base_1_x", "X of the base joint of leg 1, in the frame of the base", default=None),
+        Parameter.of("distance", "base_1_y", "Y of the base joint of leg 1, in the frame of the base", default=None),
+        Parameter.of("distance", "base_1_z", "Z of the base joint of leg 1, in the frame of the base"),
+        Parameter.of("distance", "base_2_x", "X of the base joint of leg 2, in the frame of the base", default=None),
+        Parameter.of("distance", "base_2_y", "Y of the base joint of leg 2, in the frame of the base", default=None),
+        Parameter.of("distance", "base_2_z", "Z of the base joint of leg 2, in the frame of the base"),
+        Parameter.of("distance", "base_3_x", "X of the base joint of leg 3, in the frame of the base", default=None),
+        Parameter.of("distance", "base_3_y", "Y of the base joint of leg 3, in the frame of the base", default=None),
+        Parameter.of("distance", "base_3_z", "Z of the base joint of leg 3, in the frame of the base"),
+        Parameter.of("distance", "base_4_x", "X of the base joint of leg 4, in the frame of the base", default=None),
+        Parameter.of("distance", "base_4_y", "Y of the base joint of leg 4, in the frame of the base", default=None),
+        Parameter.of("distance", "base_4_z", "Z of the base joint of leg 4, in the frame of the base"),
+        Parameter.of("distance", "base_5_x", "X of the base joint of leg 5, in the frame of the base", default=None),
+        Parameter.of("distance", "base_5_y", "Y of the base joint of leg 5, in the frame of the base", default=None),
+        Parameter.of("distance", "base_5_z", "Z of the base joint of leg 5, in the frame of the base"),
+        Parameter.of("distance", "base_6_x", "X of the base joint of leg 6, in the frame of the base", default=None),
+        Parameter.of("distance", "base_6_y", "Y of the base joint of leg 6, in the frame of the base", default=None),
+        Parameter.of("distance", "base_6_z", "Z of the base joint of leg 6, in the frame of the base"),
+        Parameter.of(
+            "distance", "platform_1_x", "X of the platform joint of leg 1, in the frame of the platform", default=None
+        ),
+        Parameter.of(
+            "distance", "platform_1_y", "Y of the platform joint of leg 1, in the frame of the platform", default=None
+        ),
+        Parameter.of("distance", "platform_1_z", "Z of the platform joint of leg 1, in the frame of the platform"),
+        Parameter.of(
+            "distance", "platform_2_x", "X of the platform joint of leg 2, in the frame of the platform", default=None
+        ),
+        Parameter.of(
+            "distance", "platform_2_y", "Y of the platform joint of leg 2, in the frame of the platform", default=None
+        ),
+        Parameter.of("distance", "platform_2_z", "Z of the platform joint of leg 2, in the frame of the platform"),
+        Parameter.of(
+            "distance", "platform_3_x", "X of the platform joint of leg 3, in the frame of the platform", default=None
+        ),
+        Parameter.of(
+            "distance", "platform_3_y", "Y of the platform joint of leg 3, in the frame of the platform", default=None
+        ),
+        Parameter.of("distance", "platform_3_z", "Z of the platform joint of leg 3, in the frame of the platform"),
+        Parameter.of(
+            "distance", "platform_4_x", "X of the platform joint of leg 4, in the frame of the platform", default=None
+        ),
+        Parameter.of(
+            "distance", "platform_4_y", "Y of the platform joint of leg 4, in the frame of the platform", default=None
+        ),
+        Parameter.of("distance", "platform_4_z", "Z of the platform joint of leg 4, in the frame of the platform"),
+        Parameter.of(
+            "distance", "platform_5_x", "X of the platform joint of leg 5, in the frame of the platform", default=None
+        ),
+        Parameter.of(
+            "distance", "platform_5_y", "Y of the platform joint of leg 5, in the frame of the platform", default=None
+        ),
+        Parameter.of("distance", "platform_5_z", "Z of the platform joint of leg 5, in the frame of the platform"),
+        Parameter.of(
+            "distance", "platform_6_x", "X of the platform joint of leg 6, in the frame of the platform", default=None
+        ),
+        Parameter.of(
+            "distance", "platform_6_y", "Y of the platform joint of leg 6, in the frame of the platform", default=None
+        ),
+        Parameter.of("distance", "platform_6_z", "Z of the platform joint of leg 6, in the frame of the platform"),
+        Parameter.of("distance", "home_x", "X of the platform at its home pose"),
+        Parameter.of("distance", "home_y", "Y of the platform at its home pose"),
+        Parameter.of("distance", "home_z", "Z of the platform at its home pose", default=None),
+        Parameter.of("angle", "home_roll", "Roll of the home pose: Rz(yaw) Ry(pitch) Rx(roll)", low=-360.0, high=360.0),
+        Parameter.of(
+            "angle", "home_pitch", "Pitch of the home pose: Rz(yaw) Ry(pitch) Rx(roll)", low=-360.0, high=360.0
+        ),
+        Parameter.of("angle", "home_yaw", "Yaw of the home pose: Rz(yaw) Ry(pitch) Rx(roll)", low=-360.0, high=360.0),
+        Parameter.of(
+            "angle",
+            "max_angle_base_joint",
+            "Largest lean of a leg from home, at the base; 180: no bound",
+            low=0.0,
+            high=180.0,
+            default=180.0,
+        ),
+        Parameter.of(
+            "angle",
+            "max_angle_platform_joint",
+            "Largest lean of a leg from home, at the platform; 180: no bound",
+            low=0.0,
+            high=180.0,
+            default=180.0,
+        ),
+        Parameter.of("distance", "offset_l1", "L1: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_l2", "L2: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_l3", "L3: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_l4", "L4: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_l5", "L5: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_l6", "L6: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_l1", "L1: lower limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "upper_l1", "L1: upper limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "lower_l2", "L2: lower limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "upper_l2", "L2: upper limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "lower_l3", "L3: lower limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "upper_l3", "L3: upper limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "lower_l4", "L4: lower limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "upper_l4", "L4: upper limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "lower_l5", "L5: lower limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "upper_l5", "L5: upper limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "lower_l6", "L6: lower limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "upper_l6", "L6: upper limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of(
+            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
+        ),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = ()
     DEFAULT_CONFIGURATION = ()
@@ -552,21 +484,72 @@ class Hexapod(IterativeForward):
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
     def __init__(
-        self, *, base_1_x: float, base_1_y: float, base_1_z: float = 0.0, base_2_x: float, base_2_y: float,
-        base_2_z: float = 0.0, base_3_x: float, base_3_y: float, base_3_z: float = 0.0, base_4_x: float,
-        base_4_y: float, base_4_z: float = 0.0, base_5_x: float, base_5_y: float, base_5_z: float = 0.0,
-        base_6_x: float, base_6_y: float, base_6_z: float = 0.0, platform_1_x: float, platform_1_y: float,
-        platform_1_z: float = 0.0, platform_2_x: float, platform_2_y: float, platform_2_z: float = 0.0,
-        platform_3_x: float, platform_3_y: float, platform_3_z: float = 0.0, platform_4_x: float,
-        platform_4_y: float, platform_4_z: float = 0.0, platform_5_x: float, platform_5_y: float,
-        platform_5_z: float = 0.0, platform_6_x: float, platform_6_y: float, platform_6_z: float = 0.0,
-        home_x: float = 0.0, home_y: float = 0.0, home_z: float, home_roll: float = 0.0, home_pitch: float = 0.0,
-        home_yaw: float = 0.0, max_angle_base_joint: float = 180.0, max_angle_platform_joint: float = 180.0,
-        offset_l1: float = 0.0, offset_l2: float = 0.0, offset_l3: float = 0.0, offset_l4: float = 0.0,
-        offset_l5: float = 0.0, offset_l6: float = 0.0, lower_l1: float = 0.0, upper_l1: float = 0.0,
-        lower_l2: float = 0.0, upper_l2: float = 0.0, lower_l3: float = 0.0, upper_l3: float = 0.0,
-        lower_l4: float = 0.0, upper_l4: float = 0.0, lower_l5: float = 0.0, upper_l5: float = 0.0,
-        lower_l6: float = 0.0, upper_l6: float = 0.0, min_type2_margin: float = 0.001, check_limits: bool = True,
+        self,
+        *,
+        base_1_x: float,
+        base_1_y: float,
+        base_1_z: float = 0.0,
+        base_2_x: float,
+        base_2_y: float,
+        base_2_z: float = 0.0,
+        base_3_x: float,
+        base_3_y: float,
+        base_3_z: float = 0.0,
+        base_4_x: float,
+        base_4_y: float,
+        base_4_z: float = 0.0,
+        base_5_x: float,
+        base_5_y: float,
+        base_5_z: float = 0.0,
+        base_6_x: float,
+        base_6_y: float,
+        base_6_z: float = 0.0,
+        platform_1_x: float,
+        platform_1_y: float,
+        platform_1_z: float = 0.0,
+        platform_2_x: float,
+        platform_2_y: float,
+        platform_2_z: float = 0.0,
+        platform_3_x: float,
+        platform_3_y: float,
+        platform_3_z: float = 0.0,
+        platform_4_x: float,
+        platform_4_y: float,
+        platform_4_z: float = 0.0,
+        platform_5_x: float,
+        platform_5_y: float,
+        platform_5_z: float = 0.0,
+        platform_6_x: float,
+        platform_6_y: float,
+        platform_6_z: float = 0.0,
+        home_x: float = 0.0,
+        home_y: float = 0.0,
+        home_z: float,
+        home_roll: float = 0.0,
+        home_pitch: float = 0.0,
+        home_yaw: float = 0.0,
+        max_angle_base_joint: float = 180.0,
+        max_angle_platform_joint: float = 180.0,
+        offset_l1: float = 0.0,
+        offset_l2: float = 0.0,
+        offset_l3: float = 0.0,
+        offset_l4: float = 0.0,
+        offset_l5: float = 0.0,
+        offset_l6: float = 0.0,
+        lower_l1: float = 0.0,
+        upper_l1: float = 0.0,
+        lower_l2: float = 0.0,
+        upper_l2: float = 0.0,
+        lower_l3: float = 0.0,
+        upper_l3: float = 0.0,
+        lower_l4: float = 0.0,
+        upper_l4: float = 0.0,
+        lower_l5: float = 0.0,
+        upper_l5: float = 0.0,
+        lower_l6: float = 0.0,
+        upper_l6: float = 0.0,
+        min_type2_margin: float = 0.001,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -635,613 +618,47 @@ class Hexapod(IterativeForward):
         min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            base_1_x, base_1_y, base_1_z, base_2_x, base_2_y, base_2_z, base_3_x, base_3_y, base_3_z, base_4_x,
-            base_4_y, base_4_z, base_5_x, base_5_y, base_5_z, base_6_x, base_6_y, base_6_z, platform_1_x,
-            platform_1_y, platform_1_z, platform_2_x, platform_2_y, platform_2_z, platform_3_x, platform_3_y,
-            platform_3_z, platform_4_x, platform_4_y, platform_4_z, platform_5_x, platform_5_y, platform_5_z,
-            platform_6_x, platform_6_y, platform_6_z, home_x, home_y, home_z, home_roll, home_pitch, home_yaw,
-            max_angle_base_joint, max_angle_platform_joint, offset_l1, offset_l2, offset_l3, offset_l4, offset_l5,
-            offset_l6, lower_l1, upper_l1, lower_l2, upper_l2, lower_l3, upper_l3, lower_l4, upper_l4, lower_l5,
-            upper_l5, lower_l6, upper_l6, min_type2_margin, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_l1=-1e12, lowest_l2=-1e12, lowest_l3=-1e12, lowest_l4=-1e12, lowest_l5=-1e12, lowest_l6=-1e12,
-                highest_l1=1e12, highest_l2=1e12, highest_l3=1e12, highest_l4=1e12, highest_l5=1e12, highest_l6=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, base_1_x: float, base_1_y: float, base_1_z: float, base_2_x: float, base_2_y: float,
-        base_2_z: float, base_3_x: float, base_3_y: float, base_3_z: float, base_4_x: float, base_4_y: float,
-        base_4_z: float, base_5_x: float, base_5_y: float, base_5_z: float, base_6_x: float, base_6_y: float,
-        base_6_z: float, platform_1_x: float, platform_1_y: float, platform_1_z: float, platform_2_x: float,
-        platform_2_y: float, platform_2_z: float, platform_3_x: float, platform_3_y: float, platform_3_z: float,
-        platform_4_x: float, platform_4_y: float, platform_4_z: float, platform_5_x: float, platform_5_y: float,
-        platform_5_z: float, platform_6_x: float, platform_6_y: float, platform_6_z: float, home_x: float,
-        home_y: float, home_z: float, home_roll: float, home_pitch: float, home_yaw: float,
-        max_angle_base_joint: float, max_angle_platform_joint: float, offset_l1: float, offset_l2: float,
-        offset_l3: float, offset_l4: float, offset_l5: float, offset_l6: float, lower_l1: float, upper_l1: float,
-        lower_l2: float, upper_l2: float, lower_l3: float, upper_l3: float, lower_l4: float, upper_l4: float,
-        lower_l5: float, upper_l5: float, lower_l6: float, upper_l6: float, min_type2_margin: float,
-        check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (base_1_x >= -1e9 and base_1_x <= 1e9):
-            raise self._refusal("base_1_x: X of the base joint of leg 1, in the frame of the base", base_1_x=base_1_x)
-        if not (base_1_y >= -1e9 and base_1_y <= 1e9):
-            raise self._refusal("base_1_y: Y of the base joint of leg 1, in the frame of the base", base_1_y=base_1_y)
-        if not (base_1_z >= -1e9 and base_1_z <= 1e9):
-            raise self._refusal("base_1_z: Z of the base joint of leg 1, in the frame of the base", base_1_z=base_1_z)
-        if not (base_2_x >= -1e9 and base_2_x <= 1e9):
-            raise self._refusal("base_2_x: X of the base joint of leg 2, in the frame of the base", base_2_x=base_2_x)
-        if not (base_2_y >= -1e9 and base_2_y <= 1e9):
-            raise self._refusal("base_2_y: Y of the base joint of leg 2, in the frame of the base", base_2_y=base_2_y)
-        if not (base_2_z >= -1e9 and base_2_z <= 1e9):
-            raise self._refusal("base_2_z: Z of the base joint of leg 2, in the frame of the base", base_2_z=base_2_z)
-        if not (base_3_x >= -1e9 and base_3_x <= 1e9):
-            raise self._refusal("base_3_x: X of the base joint of leg 3, in the frame of the base", base_3_x=base_3_x)
-        if not (base_3_y >= -1e9 and base_3_y <= 1e9):
-            raise self._refusal("base_3_y: Y of the base joint of leg 3, in the frame of the base", base_3_y=base_3_y)
-        if not (base_3_z >= -1e9 and base_3_z <= 1e9):
-            raise self._refusal("base_3_z: Z of the base joint of leg 3, in the frame of the base", base_3_z=base_3_z)
-        if not (base_4_x >= -1e9 and base_4_x <= 1e9):
-            raise self._refusal("base_4_x: X of the base joint of leg 4, in the frame of the base", base_4_x=base_4_x)
-        if not (base_4_y >= -1e9 and base_4_y <= 1e9):
-            raise self._refusal("base_4_y: Y of the base joint of leg 4, in the frame of the base", base_4_y=base_4_y)
-        if not (base_4_z >= -1e9 and base_4_z <= 1e9):
-            raise self._refusal("base_4_z: Z of the base joint of leg 4, in the frame of the base", base_4_z=base_4_z)
-        if not (base_5_x >= -1e9 and base_5_x <= 1e9):
-            raise self._refusal("base_5_x: X of the base joint of leg 5, in the frame of the base", base_5_x=base_5_x)
-        if not (base_5_y >= -1e9 and base_5_y <= 1e9):
-            raise self._refusal("base_5_y: Y of the base joint of leg 5, in the frame of the base", base_5_y=base_5_y)
-        if not (base_5_z >= -1e9 and base_5_z <= 1e9):
-            raise self._refusal("base_5_z: Z of the base joint of leg 5, in the frame of the base", base_5_z=base_5_z)
-        if not (base_6_x >= -1e9 and base_6_x <= 1e9):
-            raise self._refusal("base_6_x: X of the base joint of leg 6, in the frame of the base", base_6_x=base_6_x)
-        if not (base_6_y >= -1e9 and base_6_y <= 1e9):
-            raise self._refusal("base_6_y: Y of the base joint of leg 6, in the frame of the base", base_6_y=base_6_y)
-        if not (base_6_z >= -1e9 and base_6_z <= 1e9):
-            raise self._refusal("base_6_z: Z of the base joint of leg 6, in the frame of the base", base_6_z=base_6_z)
-        if not (platform_1_x >= -1e9 and platform_1_x <= 1e9):
-            raise self._refusal(
-                "platform_1_x: X of the platform joint of leg 1, in the frame of the platform",
-                platform_1_x=platform_1_x,
-            )
-        if not (platform_1_y >= -1e9 and platform_1_y <= 1e9):
-            raise self._refusal(
-                "platform_1_y: Y of the platform joint of leg 1, in the frame of the platform",
-                platform_1_y=platform_1_y,
-            )
-        if not (platform_1_z >= -1e9 and platform_1_z <= 1e9):
-            raise self._refusal(
-                "platform_1_z: Z of the platform joint of leg 1, in the frame of the platform",
-                platform_1_z=platform_1_z,
-            )
-        if not (platform_2_x >= -1e9 and platform_2_x <= 1e9):
-            raise self._refusal(
-                "platform_2_x: X of the platform joint of leg 2, in the frame of the platform",
-                platform_2_x=platform_2_x,
-            )
-        if not (platform_2_y >= -1e9 and platform_2_y <= 1e9):
-            raise self._refusal(
-                "platform_2_y: Y of the platform joint of leg 2, in the frame of the platform",
-                platform_2_y=platform_2_y,
-            )
-        if not (platform_2_z >= -1e9 and platform_2_z <= 1e9):
-            raise self._refusal(
-                "platform_2_z: Z of the platform joint of leg 2, in the frame of the platform",
-                platform_2_z=platform_2_z,
-            )
-        if not (platform_3_x >= -1e9 and platform_3_x <= 1e9):
-            raise self._refusal(
-                "platform_3_x: X of the platform joint of leg 3, in the frame of the platform",
-                platform_3_x=platform_3_x,
-            )
-        if not (platform_3_y >= -1e9 and platform_3_y <= 1e9):
-            raise self._refusal(
-                "platform_3_y: Y of the platform joint of leg 3, in the frame of the platform",
-                platform_3_y=platform_3_y,
-            )
-        if not (platform_3_z >= -1e9 and platform_3_z <= 1e9):
-            raise self._refusal(
-                "platform_3_z: Z of the platform joint of leg 3, in the frame of the platform",
-                platform_3_z=platform_3_z,
-            )
-        if not (platform_4_x >= -1e9 and platform_4_x <= 1e9):
-            raise self._refusal(
-                "platform_4_x: X of the platform joint of leg 4, in the frame of the platform",
-                platform_4_x=platform_4_x,
-            )
-        if not (platform_4_y >= -1e9 and platform_4_y <= 1e9):
-            raise self._refusal(
-                "platform_4_y: Y of the platform joint of leg 4, in the frame of the platform",
-                platform_4_y=platform_4_y,
-            )
-        if not (platform_4_z >= -1e9 and platform_4_z <= 1e9):
-            raise self._refusal(
-                "platform_4_z: Z of the platform joint of leg 4, in the frame of the platform",
-                platform_4_z=platform_4_z,
-            )
-        if not (platform_5_x >= -1e9 and platform_5_x <= 1e9):
-            raise self._refusal(
-                "platform_5_x: X of the platform joint of leg 5, in the frame of the platform",
-                platform_5_x=platform_5_x,
-            )
-        if not (platform_5_y >= -1e9 and platform_5_y <= 1e9):
-            raise self._refusal(
-                "platform_5_y: Y of the platform joint of leg 5, in the frame of the platform",
-                platform_5_y=platform_5_y,
-            )
-        if not (platform_5_z >= -1e9 and platform_5_z <= 1e9):
-            raise self._refusal(
-                "platform_5_z: Z of the platform joint of leg 5, in the frame of the platform",
-                platform_5_z=platform_5_z,
-            )
-        if not (platform_6_x >= -1e9 and platform_6_x <= 1e9):
-            raise self._refusal(
-                "platform_6_x: X of the platform joint of leg 6, in the frame of the platform",
-                platform_6_x=platform_6_x,
-            )
-        if not (platform_6_y >= -1e9 and platform_6_y <= 1e9):
-            raise self._refusal(
-                "platform_6_y: Y of the platform joint of leg 6, in the frame of the platform",
-                platform_6_y=platform_6_y,
-            )
-        if not (platform_6_z >= -1e9 and platform_6_z <= 1e9):
-            raise self._refusal(
-                "platform_6_z: Z of the platform joint of leg 6, in the frame of the platform",
-                platform_6_z=platform_6_z,
-            )
-        if not (home_x >= -1e9 and home_x <= 1e9):
-            raise self._refusal("home_x: X of the platform at its home pose", home_x=home_x)
-        if not (home_y >= -1e9 and home_y <= 1e9):
-            raise self._refusal("home_y: Y of the platform at its home pose", home_y=home_y)
-        if not (home_z >= -1e9 and home_z <= 1e9):
-            raise self._refusal("home_z: Z of the platform at its home pose", home_z=home_z)
-        if not (home_roll >= -360.0 and home_roll <= 360.0):
-            raise self._refusal("home_roll: Roll of the home pose: Rz(yaw) Ry(pitch) Rx(roll)", home_roll=home_roll)
-        if not (home_pitch >= -360.0 and home_pitch <= 360.0):
-            raise self._refusal(
-                "home_pitch: Pitch of the home pose: Rz(yaw) Ry(pitch) Rx(roll)", home_pitch=home_pitch,
-            )
-        if not (home_yaw >= -360.0 and home_yaw <= 360.0):
-            raise self._refusal("home_yaw: Yaw of the home pose: Rz(yaw) Ry(pitch) Rx(roll)", home_yaw=home_yaw)
-        if not (max_angle_base_joint >= 0.0 and max_angle_base_joint <= 180.0):
-            raise self._refusal(
-                "max_angle_base_joint: Largest lean of a leg from home, at the base; 180: no bound",
-                max_angle_base_joint=max_angle_base_joint,
-            )
-        if not (max_angle_platform_joint >= 0.0 and max_angle_platform_joint <= 180.0):
-            raise self._refusal(
-                "max_angle_platform_joint: Largest lean of a leg from home, at the platform; 180: no bound",
-                max_angle_platform_joint=max_angle_platform_joint,
-            )
-        if not (offset_l1 >= -1e9 and offset_l1 <= 1e9):
-            raise self._refusal("offset_l1: L1: axis value at the kinematic zero position", offset_l1=offset_l1)
-        if not (offset_l2 >= -1e9 and offset_l2 <= 1e9):
-            raise self._refusal("offset_l2: L2: axis value at the kinematic zero position", offset_l2=offset_l2)
-        if not (offset_l3 >= -1e9 and offset_l3 <= 1e9):
-            raise self._refusal("offset_l3: L3: axis value at the kinematic zero position", offset_l3=offset_l3)
-        if not (offset_l4 >= -1e9 and offset_l4 <= 1e9):
-            raise self._refusal("offset_l4: L4: axis value at the kinematic zero position", offset_l4=offset_l4)
-        if not (offset_l5 >= -1e9 and offset_l5 <= 1e9):
-            raise self._refusal("offset_l5: L5: axis value at the kinematic zero position", offset_l5=offset_l5)
-        if not (offset_l6 >= -1e9 and offset_l6 <= 1e9):
-            raise self._refusal("offset_l6: L6: axis value at the kinematic zero position", offset_l6=offset_l6)
-        if not (lower_l1 >= -1e9 and lower_l1 <= 1e9):
-            raise self._refusal(
-                "lower_l1: L1: lower limit of the axis, both 0: joint value 0 or more", lower_l1=lower_l1,
-            )
-        if not (upper_l1 >= -1e9 and upper_l1 <= 1e9):
-            raise self._refusal(
-                "upper_l1: L1: upper limit of the axis, both 0: joint value 0 or more", upper_l1=upper_l1,
-            )
-        if not (lower_l2 >= -1e9 and lower_l2 <= 1e9):
-            raise self._refusal(
-                "lower_l2: L2: lower limit of the axis, both 0: joint value 0 or more", lower_l2=lower_l2,
-            )
-        if not (upper_l2 >= -1e9 and upper_l2 <= 1e9):
-            raise self._refusal(
-                "upper_l2: L2: upper limit of the axis, both 0: joint value 0 or more", upper_l2=upper_l2,
-            )
-        if not (lower_l3 >= -1e9 and lower_l3 <= 1e9):
-            raise self._refusal(
-                "lower_l3: L3: lower limit of the axis, both 0: joint value 0 or more", lower_l3=lower_l3,
-            )
-        if not (upper_l3 >= -1e9 and upper_l3 <= 1e9):
-            raise self._refusal(
-                "upper_l3: L3: upper limit of the axis, both 0: joint value 0 or more", upper_l3=upper_l3,
-            )
-        if not (lower_l4 >= -1e9 and lower_l4 <= 1e9):
-            raise self._refusal(
-                "lower_l4: L4: lower limit of the axis, both 0: joint value 0 or more", lower_l4=lower_l4,
-            )
-        if not (upper_l4 >= -1e9 and upper_l4 <= 1e9):
-            raise self._refusal(
-                "upper_l4: L4: upper limit of the axis, both 0: joint value 0 or more", upper_l4=upper_l4,
-            )
-        if not (lower_l5 >= -1e9 and lower_l5 <= 1e9):
-            raise self._refusal(
-                "lower_l5: L5: lower limit of the axis, both 0: joint value 0 or more", lower_l5=lower_l5,
-            )
-        if not (upper_l5 >= -1e9 and upper_l5 <= 1e9):
-            raise self._refusal(
-                "upper_l5: L5: upper limit of the axis, both 0: joint value 0 or more", upper_l5=upper_l5,
-            )
-        if not (lower_l6 >= -1e9 and lower_l6 <= 1e9):
-            raise self._refusal(
-                "lower_l6: L6: lower limit of the axis, both 0: joint value 0 or more", lower_l6=lower_l6,
-            )
-        if not (upper_l6 >= -1e9 and upper_l6 <= 1e9):
-            raise self._refusal(
-                "upper_l6: L6: upper limit of the axis, both 0: joint value 0 or more", upper_l6=upper_l6,
-            )
-        if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
-            raise self._refusal(
-                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
-                min_type2_margin=min_type2_margin,
-            )
-        if not ((lower_l1 < upper_l1) or (abs(lower_l1) + abs(upper_l1) <= 0.0)):
-            raise self._refusal("lower_l1 below upper_l1, or both 0", lower_l1=lower_l1, upper_l1=upper_l1)
-        unlimited_l1 = False  # l1: whether it has no limits
-        effective_lower_l1 = lower_l1 if abs(lower_l1) + abs(upper_l1) > 0.0 else offset_l1
-        effective_upper_l1 = upper_l1 if abs(lower_l1) + abs(upper_l1) > 0.0 else 1e9 + offset_l1
-        tolerance_l1 = 1e-9 + 1e-9*abs(effective_lower_l1) + 1e-9*abs(effective_upper_l1)
-        lowest_l1 = -1e12 if unlimited_l1 else effective_lower_l1 - tolerance_l1
-        highest_l1 = 1e12 if unlimited_l1 else effective_upper_l1 + tolerance_l1
-        if not ((lower_l2 < upper_l2) or (abs(lower_l2) + abs(upper_l2) <= 0.0)):
-            raise self._refusal("lower_l2 below upper_l2, or both 0", lower_l2=lower_l2, upper_l2=upper_l2)
-        unlimited_l2 = False  # l2: whether it has no limits
-        effective_lower_l2 = lower_l2 if abs(lower_l2) + abs(upper_l2) > 0.0 else offset_l2
-        effective_upper_l2 = upper_l2 if abs(lower_l2) + abs(upper_l2) > 0.0 else 1e9 + offset_l2
-        tolerance_l2 = 1e-9 + 1e-9*abs(effective_lower_l2) + 1e-9*abs(effective_upper_l2)
-        lowest_l2 = -1e12 if unlimited_l2 else effective_lower_l2 - tolerance_l2
-        highest_l2 = 1e12 if unlimited_l2 else effective_upper_l2 + tolerance_l2
-        if not ((lower_l3 < upper_l3) or (abs(lower_l3) + abs(upper_l3) <= 0.0)):
-            raise self._refusal("lower_l3 below upper_l3, or both 0", lower_l3=lower_l3, upper_l3=upper_l3)
-        unlimited_l3 = False  # l3: whether it has no limits
-        effective_lower_l3 = lower_l3 if abs(lower_l3) + abs(upper_l3) > 0.0 else offset_l3
-        effective_upper_l3 = upper_l3 if abs(lower_l3) + abs(upper_l3) > 0.0 else 1e9 + offset_l3
-        tolerance_l3 = 1e-9 + 1e-9*abs(effective_lower_l3) + 1e-9*abs(effective_upper_l3)
-        lowest_l3 = -1e12 if unlimited_l3 else effective_lower_l3 - tolerance_l3
-        highest_l3 = 1e12 if unlimited_l3 else effective_upper_l3 + tolerance_l3
-        if not ((lower_l4 < upper_l4) or (abs(lower_l4) + abs(upper_l4) <= 0.0)):
-            raise self._refusal("lower_l4 below upper_l4, or both 0", lower_l4=lower_l4, upper_l4=upper_l4)
-        unlimited_l4 = False  # l4: whether it has no limits
-        effective_lower_l4 = lower_l4 if abs(lower_l4) + abs(upper_l4) > 0.0 else offset_l4
-        effective_upper_l4 = upper_l4 if abs(lower_l4) + abs(upper_l4) > 0.0 else 1e9 + offset_l4
-        tolerance_l4 = 1e-9 + 1e-9*abs(effective_lower_l4) + 1e-9*abs(effective_upper_l4)
-        lowest_l4 = -1e12 if unlimited_l4 else effective_lower_l4 - tolerance_l4
-        highest_l4 = 1e12 if unlimited_l4 else effective_upper_l4 + tolerance_l4
-        if not ((lower_l5 < upper_l5) or (abs(lower_l5) + abs(upper_l5) <= 0.0)):
-            raise self._refusal("lower_l5 below upper_l5, or both 0", lower_l5=lower_l5, upper_l5=upper_l5)
-        unlimited_l5 = False  # l5: whether it has no limits
-        effective_lower_l5 = lower_l5 if abs(lower_l5) + abs(upper_l5) > 0.0 else offset_l5
-        effective_upper_l5 = upper_l5 if abs(lower_l5) + abs(upper_l5) > 0.0 else 1e9 + offset_l5
-        tolerance_l5 = 1e-9 + 1e-9*abs(effective_lower_l5) + 1e-9*abs(effective_upper_l5)
-        lowest_l5 = -1e12 if unlimited_l5 else effective_lower_l5 - tolerance_l5
-        highest_l5 = 1e12 if unlimited_l5 else effective_upper_l5 + tolerance_l5
-        if not ((lower_l6 < upper_l6) or (abs(lower_l6) + abs(upper_l6) <= 0.0)):
-            raise self._refusal("lower_l6 below upper_l6, or both 0", lower_l6=lower_l6, upper_l6=upper_l6)
-        unlimited_l6 = False  # l6: whether it has no limits
-        effective_lower_l6 = lower_l6 if abs(lower_l6) + abs(upper_l6) > 0.0 else offset_l6
-        effective_upper_l6 = upper_l6 if abs(lower_l6) + abs(upper_l6) > 0.0 else 1e9 + offset_l6
-        tolerance_l6 = 1e-9 + 1e-9*abs(effective_lower_l6) + 1e-9*abs(effective_upper_l6)
-        lowest_l6 = -1e12 if unlimited_l6 else effective_lower_l6 - tolerance_l6
-        highest_l6 = 1e12 if unlimited_l6 else effective_upper_l6 + tolerance_l6
-        cos_home_roll = cos(DEGREE*home_roll)
-        sin_home_roll = sin(DEGREE*home_roll)
-        cos_home_pitch = cos(DEGREE*home_pitch)
-        sin_home_pitch = sin(DEGREE*home_pitch)
-        cos_home_yaw = cos(DEGREE*home_yaw)
-        sin_home_yaw = sin(DEGREE*home_yaw)
-        home_r11 = cos_home_pitch*cos_home_yaw
-        home_r12 = cos_home_yaw*sin_home_pitch*sin_home_roll - cos_home_roll*sin_home_yaw
-        home_r13 = sin_home_roll*sin_home_yaw + cos_home_roll*cos_home_yaw*sin_home_pitch
-        home_r21 = cos_home_pitch*sin_home_yaw
-        home_r22 = cos_home_roll*cos_home_yaw + sin_home_pitch*sin_home_roll*sin_home_yaw
-        home_r23 = cos_home_roll*sin_home_pitch*sin_home_yaw - cos_home_yaw*sin_home_roll
-        home_r31 = -sin_home_pitch
-        home_r32 = cos_home_pitch*sin_home_roll
-        home_r33 = cos_home_pitch*cos_home_roll
-        home_arm_1_x = home_r11*platform_1_x + home_r12*platform_1_y + home_r13*platform_1_z
-        home_arm_1_y = home_r21*platform_1_x + home_r22*platform_1_y + home_r23*platform_1_z
-        home_arm_1_z = home_r31*platform_1_x + home_r32*platform_1_y + home_r33*platform_1_z
-        home_arm_2_x = home_r11*platform_2_x + home_r12*platform_2_y + home_r13*platform_2_z
-        home_arm_2_y = home_r21*platform_2_x + home_r22*platform_2_y + home_r23*platform_2_z
-        home_arm_2_z = home_r31*platform_2_x + home_r32*platform_2_y + home_r33*platform_2_z
-        home_arm_3_x = home_r11*platform_3_x + home_r12*platform_3_y + home_r13*platform_3_z
-        home_arm_3_y = home_r21*platform_3_x + home_r22*platform_3_y + home_r23*platform_3_z
-        home_arm_3_z = home_r31*platform_3_x + home_r32*platform_3_y + home_r33*platform_3_z
-        home_arm_4_x = home_r11*platform_4_x + home_r12*platform_4_y + home_r13*platform_4_z
-        home_arm_4_y = home_r21*platform_4_x + home_r22*platform_4_y + home_r23*platform_4_z
-        home_arm_4_z = home_r31*platform_4_x + home_r32*platform_4_y + home_r33*platform_4_z
-        home_arm_5_x = home_r11*platform_5_x + home_r12*platform_5_y + home_r13*platform_5_z
-        home_arm_5_y = home_r21*platform_5_x + home_r22*platform_5_y + home_r23*platform_5_z
-        home_arm_5_z = home_r31*platform_5_x + home_r32*platform_5_y + home_r33*platform_5_z
-        home_arm_6_x = home_r11*platform_6_x + home_r12*platform_6_y + home_r13*platform_6_z
-        home_arm_6_y = home_r21*platform_6_x + home_r22*platform_6_y + home_r23*platform_6_z
-        home_arm_6_z = home_r31*platform_6_x + home_r32*platform_6_y + home_r33*platform_6_z
-        # centre of the joints on the platform
-        centre_x = (
-            platform_1_x/6.0 + platform_2_x/6.0 + platform_3_x/6.0 + platform_4_x/6.0 + platform_5_x/6.0
-            + platform_6_x/6.0
-        )
-        # centre of the joints on the platform
-        centre_y = (
-            platform_1_y/6.0 + platform_2_y/6.0 + platform_3_y/6.0 + platform_4_y/6.0 + platform_5_y/6.0
-            + platform_6_y/6.0
-        )
-        # centre of the joints on the platform
-        centre_z = (
-            platform_1_z/6.0 + platform_2_z/6.0 + platform_3_z/6.0 + platform_4_z/6.0 + platform_5_z/6.0
-            + platform_6_z/6.0
-        )
-        # root mean square of their distances from it
-        spread = root(
-            (platform_1_x - centre_x)*(platform_1_x - centre_x)/6.0
-            + (platform_2_x - centre_x)*(platform_2_x - centre_x)/6.0
-            + (platform_3_x - centre_x)*(platform_3_x - centre_x)/6.0
-            + (platform_4_x - centre_x)*(platform_4_x - centre_x)/6.0
-            + (platform_5_x - centre_x)*(platform_5_x - centre_x)/6.0
-            + (platform_6_x - centre_x)*(platform_6_x - centre_x)/6.0
-            + (platform_1_y - centre_y)*(platform_1_y - centre_y)/6.0
-            + (platform_2_y - centre_y)*(platform_2_y - centre_y)/6.0
-            + (platform_3_y - centre_y)*(platform_3_y - centre_y)/6.0
-            + (platform_4_y - centre_y)*(platform_4_y - centre_y)/6.0
-            + (platform_5_y - centre_y)*(platform_5_y - centre_y)/6.0
-            + (platform_6_y - centre_y)*(platform_6_y - centre_y)/6.0
-            + (platform_1_z - centre_z)*(platform_1_z - centre_z)/6.0
-            + (platform_2_z - centre_z)*(platform_2_z - centre_z)/6.0
-            + (platform_3_z - centre_z)*(platform_3_z - centre_z)/6.0
-            + (platform_4_z - centre_z)*(platform_4_z - centre_z)/6.0
-            + (platform_5_z - centre_z)*(platform_5_z - centre_z)/6.0
-            + (platform_6_z - centre_z)*(platform_6_z - centre_z)/6.0
-        )
-        platform_radius = spread if spread > 0.0 else 1.0
-        # leg 1: vector from its joint on the base to its joint on the platform
-        span_1_x = home_arm_1_x + home_x - base_1_x
-        span_1_y = home_arm_1_y + home_y - base_1_y
-        span_1_z = home_arm_1_z + home_z - base_1_z
-        # leg 2: vector from its joint on the base to its joint on the platform
-        span_2_x = home_arm_2_x + home_x - base_2_x
-        span_2_y = home_arm_2_y + home_y - base_2_y
-        span_2_z = home_arm_2_z + home_z - base_2_z
-        # leg 3: vector from its joint on the base to its joint on the platform
-        span_3_x = home_arm_3_x + home_x - base_3_x
-        span_3_y = home_arm_3_y + home_y - base_3_y
-        span_3_z = home_arm_3_z + home_z - base_3_z
-        # leg 4: vector from its joint on the base to its joint on the platform
-        span_4_x = home_arm_4_x + home_x - base_4_x
-        span_4_y = home_arm_4_y + home_y - base_4_y
-        span_4_z = home_arm_4_z + home_z - base_4_z
-        # leg 5: vector from its joint on the base to its joint on the platform
-        span_5_x = home_arm_5_x + home_x - base_5_x
-        span_5_y = home_arm_5_y + home_y - base_5_y
-        span_5_z = home_arm_5_z + home_z - base_5_z
-        # leg 6: vector from its joint on the base to its joint on the platform
-        span_6_x = home_arm_6_x + home_x - base_6_x
-        span_6_y = home_arm_6_y + home_y - base_6_y
-        span_6_z = home_arm_6_z + home_z - base_6_z
-        length_1 = sqrt(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
-        length_2 = sqrt(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
-        length_3 = sqrt(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
-        length_4 = sqrt(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
-        length_5 = sqrt(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
-        length_6 = sqrt(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
-        # characteristic length: mean leg, radius of the platform
-        machine_scale = (
-            length_1/6.0 + length_2/6.0 + length_3/6.0 + length_4/6.0 + length_5/6.0 + length_6/6.0 + platform_radius
-        )
-        if not (
-            length_1 > 1e-9*machine_scale and length_2 > 1e-9*machine_scale and length_3 > 1e-9*machine_scale
-            and length_4 > 1e-9*machine_scale and length_5 > 1e-9*machine_scale and length_6 > 1e-9*machine_scale
-            and spread > 1e-9*machine_scale
-        ):
-            raise self._refusal("legs that have a length at the home pose, and joints that are apart")
-        # leg 1 as a line: unit vector, and its moment about the platform's origin
-        divisor_1 = length_1 if length_1 > 1e-9*machine_scale else 1.0
-        along_1_x = span_1_x/divisor_1
-        along_1_y = span_1_y/divisor_1
-        along_1_z = span_1_z/divisor_1
-        moment_1_x = (along_1_z*home_arm_1_y - along_1_y*home_arm_1_z)/platform_radius
-        moment_1_y = (along_1_x*home_arm_1_z - along_1_z*home_arm_1_x)/platform_radius
-        moment_1_z = (along_1_y*home_arm_1_x - along_1_x*home_arm_1_y)/platform_radius
-        # leg 2 as a line: unit vector, and its moment about the platform's origin
-        divisor_2 = length_2 if length_2 > 1e-9*machine_scale else 1.0
-        along_2_x = span_2_x/divisor_2
-        along_2_y = span_2_y/divisor_2
-        along_2_z = span_2_z/divisor_2
-        moment_2_x = (along_2_z*home_arm_2_y - along_2_y*home_arm_2_z)/platform_radius
-        moment_2_y = (along_2_x*home_arm_2_z - along_2_z*home_arm_2_x)/platform_radius
-        moment_2_z = (along_2_y*home_arm_2_x - along_2_x*home_arm_2_y)/platform_radius
-        # leg 3 as a line: unit vector, and its moment about the platform's origin
-        divisor_3 = length_3 if length_3 > 1e-9*machine_scale else 1.0
-        along_3_x = span_3_x/divisor_3
-        along_3_y = span_3_y/divisor_3
-        along_3_z = span_3_z/divisor_3
-        moment_3_x = (along_3_z*home_arm_3_y - along_3_y*home_arm_3_z)/platform_radius
-        moment_3_y = (along_3_x*home_arm_3_z - along_3_z*home_arm_3_x)/platform_radius
-        moment_3_z = (along_3_y*home_arm_3_x - along_3_x*home_arm_3_y)/platform_radius
-        # leg 4 as a line: unit vector, and its moment about the platform's origin
-        divisor_4 = length_4 if length_4 > 1e-9*machine_scale else 1.0
-        along_4_x = span_4_x/divisor_4
-        along_4_y = span_4_y/divisor_4
-        along_4_z = span_4_z/divisor_4
-        moment_4_x = (along_4_z*home_arm_4_y - along_4_y*home_arm_4_z)/platform_radius
-        moment_4_y = (along_4_x*home_arm_4_z - along_4_z*home_arm_4_x)/platform_radius
-        moment_4_z = (along_4_y*home_arm_4_x - along_4_x*home_arm_4_y)/platform_radius
-        # leg 5 as a line: unit vector, and its moment about the platform's origin
-        divisor_5 = length_5 if length_5 > 1e-9*machine_scale else 1.0
-        along_5_x = span_5_x/divisor_5
-        along_5_y = span_5_y/divisor_5
-        along_5_z = span_5_z/divisor_5
-        moment_5_x = (along_5_z*home_arm_5_y - along_5_y*home_arm_5_z)/platform_radius
-        moment_5_y = (along_5_x*home_arm_5_z - along_5_z*home_arm_5_x)/platform_radius
-        moment_5_z = (along_5_y*home_arm_5_x - along_5_x*home_arm_5_y)/platform_radius
-        # leg 6 as a line: unit vector, and its moment about the platform's origin
-        divisor_6 = length_6 if length_6 > 1e-9*machine_scale else 1.0
-        along_6_x = span_6_x/divisor_6
-        along_6_y = span_6_y/divisor_6
-        along_6_z = span_6_z/divisor_6
-        moment_6_x = (along_6_z*home_arm_6_y - along_6_y*home_arm_6_z)/platform_radius
-        moment_6_y = (along_6_x*home_arm_6_z - along_6_z*home_arm_6_x)/platform_radius
-        moment_6_z = (along_6_y*home_arm_6_x - along_6_x*home_arm_6_y)/platform_radius
-        plate_axis_1_x = along_1_x*home_r11 + along_1_y*home_r21 + along_1_z*home_r31
-        plate_axis_1_y = along_1_x*home_r12 + along_1_y*home_r22 + along_1_z*home_r32
-        plate_axis_1_z = along_1_x*home_r13 + along_1_y*home_r23 + along_1_z*home_r33
-        plate_axis_2_x = along_2_x*home_r11 + along_2_y*home_r21 + along_2_z*home_r31
-        plate_axis_2_y = along_2_x*home_r12 + along_2_y*home_r22 + along_2_z*home_r32
-        plate_axis_2_z = along_2_x*home_r13 + along_2_y*home_r23 + along_2_z*home_r33
-        plate_axis_3_x = along_3_x*home_r11 + along_3_y*home_r21 + along_3_z*home_r31
-        plate_axis_3_y = along_3_x*home_r12 + along_3_y*home_r22 + along_3_z*home_r32
-        plate_axis_3_z = along_3_x*home_r13 + along_3_y*home_r23 + along_3_z*home_r33
-        plate_axis_4_x = along_4_x*home_r11 + along_4_y*home_r21 + along_4_z*home_r31
-        plate_axis_4_y = along_4_x*home_r12 + along_4_y*home_r22 + along_4_z*home_r32
-        plate_axis_4_z = along_4_x*home_r13 + along_4_y*home_r23 + along_4_z*home_r33
-        plate_axis_5_x = along_5_x*home_r11 + along_5_y*home_r21 + along_5_z*home_r31
-        plate_axis_5_y = along_5_x*home_r12 + along_5_y*home_r22 + along_5_z*home_r32
-        plate_axis_5_z = along_5_x*home_r13 + along_5_y*home_r23 + along_5_z*home_r33
-        plate_axis_6_x = along_6_x*home_r11 + along_6_y*home_r21 + along_6_z*home_r31
-        plate_axis_6_y = along_6_x*home_r12 + along_6_y*home_r22 + along_6_z*home_r32
-        plate_axis_6_z = along_6_x*home_r13 + along_6_y*home_r23 + along_6_z*home_r33
-        # determinant at the home pose: zero where the legs do not hold the platform
-        (determinant,) = solve(
-            (
-                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
-            ),
-            (),
-        )
-        if not (abs(determinant) > 0.001):
-            raise self._refusal("a home pose at which the legs hold the platform")
-        assembly_sign = 1.0 if determinant > 0.0 else -1.0  # assembly mode of this machine
-        within = 1e-11*machine_scale  # tolerance of the leg lengths
-        # least cosine of a leg's lean on the base
-        least_cos_base = (
-            cos(DEGREE*max_angle_base_joint) - 1e-12
-            if cos(DEGREE*max_angle_base_joint) > -0.999999999999
-            else -2.0
-        )
-        # least cosine of a leg's lean on the plate
-        least_cos_plate = (
-            cos(DEGREE*max_angle_platform_joint) - 1e-12
-            if cos(DEGREE*max_angle_platform_joint) > -0.999999999999
-            else -2.0
-        )
-        machine_scale_times_shortest_link = 1e-9*machine_scale
-        machine_scale_squared = machine_scale*machine_scale
-        one_by_platform_radius = 1.0/platform_radius
-        return Constants(
-            base_1_x=base_1_x, base_1_y=base_1_y, base_1_z=base_1_z, base_2_x=base_2_x, base_2_y=base_2_y,
-            base_2_z=base_2_z, base_3_x=base_3_x, base_3_y=base_3_y, base_3_z=base_3_z, base_4_x=base_4_x,
-            base_4_y=base_4_y, base_4_z=base_4_z, base_5_x=base_5_x, base_5_y=base_5_y, base_5_z=base_5_z,
-            base_6_x=base_6_x, base_6_y=base_6_y, base_6_z=base_6_z, platform_1_x=platform_1_x,
-            platform_1_y=platform_1_y, platform_1_z=platform_1_z, platform_2_x=platform_2_x,
-            platform_2_y=platform_2_y, platform_2_z=platform_2_z, platform_3_x=platform_3_x,
-            platform_3_y=platform_3_y, platform_3_z=platform_3_z, platform_4_x=platform_4_x,
-            platform_4_y=platform_4_y, platform_4_z=platform_4_z, platform_5_x=platform_5_x,
-            platform_5_y=platform_5_y, platform_5_z=platform_5_z, platform_6_x=platform_6_x,
-            platform_6_y=platform_6_y, platform_6_z=platform_6_z, home_x=home_x, home_y=home_y, home_z=home_z,
-            home_roll=home_roll, home_pitch=home_pitch, home_yaw=home_yaw, max_angle_base_joint=max_angle_base_joint,
-            max_angle_platform_joint=max_angle_platform_joint, offset_l1=offset_l1, offset_l2=offset_l2,
-            offset_l3=offset_l3, offset_l4=offset_l4, offset_l5=offset_l5, offset_l6=offset_l6,
-            min_type2_margin=min_type2_margin, check_limits=check_limits, lower_l1=effective_lower_l1,
-            upper_l1=effective_upper_l1, unlimited_l1=unlimited_l1, lowest_l1=lowest_l1, highest_l1=highest_l1,
-            lower_l2=effective_lower_l2, upper_l2=effective_upper_l2, unlimited_l2=unlimited_l2, lowest_l2=lowest_l2,
-            highest_l2=highest_l2, lower_l3=effective_lower_l3, upper_l3=effective_upper_l3,
-            unlimited_l3=unlimited_l3, lowest_l3=lowest_l3, highest_l3=highest_l3, lower_l4=effective_lower_l4,
-            upper_l4=effective_upper_l4, unlimited_l4=unlimited_l4, lowest_l4=lowest_l4, highest_l4=highest_l4,
-            lower_l5=effective_lower_l5, upper_l5=effective_upper_l5, unlimited_l5=unlimited_l5, lowest_l5=lowest_l5,
-            highest_l5=highest_l5, lower_l6=effective_lower_l6, upper_l6=effective_upper_l6,
-            unlimited_l6=unlimited_l6, lowest_l6=lowest_l6, highest_l6=highest_l6, home_r11=home_r11,
-            home_r12=home_r12, home_r13=home_r13, home_r21=home_r21, home_r22=home_r22, home_r23=home_r23,
-            home_r31=home_r31, home_r32=home_r32, home_r33=home_r33, platform_radius=platform_radius,
-            machine_scale=machine_scale, assembly_sign=assembly_sign, home_along_1_x=along_1_x,
-            home_along_1_y=along_1_y, home_along_1_z=along_1_z, plate_axis_1_x=plate_axis_1_x,
-            plate_axis_1_y=plate_axis_1_y, plate_axis_1_z=plate_axis_1_z, home_along_2_x=along_2_x,
-            home_along_2_y=along_2_y, home_along_2_z=along_2_z, plate_axis_2_x=plate_axis_2_x,
-            plate_axis_2_y=plate_axis_2_y, plate_axis_2_z=plate_axis_2_z, home_along_3_x=along_3_x,
-            home_along_3_y=along_3_y, home_along_3_z=along_3_z, plate_axis_3_x=plate_axis_3_x,
-            plate_axis_3_y=plate_axis_3_y, plate_axis_3_z=plate_axis_3_z, home_along_4_x=along_4_x,
-            home_along_4_y=along_4_y, home_along_4_z=along_4_z, plate_axis_4_x=plate_axis_4_x,
-            plate_axis_4_y=plate_axis_4_y, plate_axis_4_z=plate_axis_4_z, home_along_5_x=along_5_x,
-            home_along_5_y=along_5_y, home_along_5_z=along_5_z, plate_axis_5_x=plate_axis_5_x,
-            plate_axis_5_y=plate_axis_5_y, plate_axis_5_z=plate_axis_5_z, home_along_6_x=along_6_x,
-            home_along_6_y=along_6_y, home_along_6_z=along_6_z, plate_axis_6_x=plate_axis_6_x,
-            plate_axis_6_y=plate_axis_6_y, plate_axis_6_z=plate_axis_6_z, within=within,
-            least_cos_base=least_cos_base, least_cos_plate=least_cos_plate,
-            machine_scale_times_shortest_link=machine_scale_times_shortest_link,
-            machine_scale_squared=machine_scale_squared, one_by_platform_radius=one_by_platform_radius,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
 
     def _find_platform(self, given: Values) -> Values | Status:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""
         (
-            axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_r11, start_r12, start_r13, start_r21,
-            start_r22, start_r23, start_r31, start_r32, start_r33, start_x, start_y, start_z,
+            axis_l1,
+            axis_l2,
+            axis_l3,
+            axis_l4,
+            axis_l5,
+            axis_l6,
+            start_r11,
+            start_r12,
+            start_r13,
+            start_r21,
+            start_r22,
+            start_r23,
+            start_r31,
+            start_r32,
+            start_r33,
+            start_x,
+            start_y,
+            start_z,
         ) = given
         k = self._constants
-        assembly_sign = k.assembly_sign
-        base_1_x = k.base_1_x
-        base_1_y = k.base_1_y
-        base_1_z = k.base_1_z
-        base_2_x = k.base_2_x
-        base_2_y = k.base_2_y
-        base_2_z = k.base_2_z
-        base_3_x = k.base_3_x
-        base_3_y = k.base_3_y
-        base_3_z = k.base_3_z
-        base_4_x = k.base_4_x
-        base_4_y = k.base_4_y
-        base_4_z = k.base_4_z
-        base_5_x = k.base_5_x
-        base_5_y = k.base_5_y
-        base_5_z = k.base_5_z
-        base_6_x = k.base_6_x
-        base_6_y = k.base_6_y
-        base_6_z = k.base_6_z
+        assembly_sign, base_1_x, base_1_y, base_1_z = k.assembly_sign, k.base_1_x, k.base_1_y, k.base_1_z
+        base_2_x, base_2_y, base_2_z, base_3_x, base_3_y = k.base_2_x, k.base_2_y, k.base_2_z, k.base_3_x, k.base_3_y
+        base_3_z, base_4_x, base_4_y, base_4_z, base_5_x = k.base_3_z, k.base_4_x, k.base_4_y, k.base_4_z, k.base_5_x
+        base_5_y, base_5_z, base_6_x, base_6_y, base_6_z = k.base_5_y, k.base_5_z, k.base_6_x, k.base_6_y, k.base_6_z
         machine_scale_squared = k.machine_scale_squared
-        machine_scale_times_shortest_link = k.machine_scale_times_shortest_link
-        offset_l1 = k.offset_l1
-        offset_l2 = k.offset_l2
-        offset_l3 = k.offset_l3
-        offset_l4 = k.offset_l4
-        offset_l5 = k.offset_l5
-        offset_l6 = k.offset_l6
-        one_by_platform_radius = k.one_by_platform_radius
-        platform_1_x = k.platform_1_x
-        platform_1_y = k.platform_1_y
-        platform_1_z = k.platform_1_z
-        platform_2_x = k.platform_2_x
-        platform_2_y = k.platform_2_y
-        platform_2_z = k.platform_2_z
-        platform_3_x = k.platform_3_x
-        platform_3_y = k.platform_3_y
-        platform_3_z = k.platform_3_z
-        platform_4_x = k.platform_4_x
-        platform_4_y = k.platform_4_y
-        platform_4_z = k.platform_4_z
-        platform_5_x = k.platform_5_x
-        platform_5_y = k.platform_5_y
-        platform_5_z = k.platform_5_z
-        platform_6_x = k.platform_6_x
-        platform_6_y = k.platform_6_y
-        platform_6_z = k.platform_6_z
-        within = k.within
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_l1 <= 1e9 and -1e9 <= axis_l2 <= 1e9 and -1e9 <= axis_l3 <= 1e9 and -1e9 <= axis_l4 <= 1e9
-            and -1e9 <= axis_l5 <= 1e9 and -1e9 <= axis_l6 <= 1e9
-        ):
+        machine_scale_times_shortest_link, offset_l1 = k.machine_scale_times_shortest_link, k.offset_l1
+        offset_l2, offset_l3, offset_l4, offset_l5 = k.offset_l2, k.offset_l3, k.offset_l4, k.offset_l5
+        offset_l6, one_by_platform_radius, platform_1_x = k.offset_l6, k.one_by_platform_radius, k.platform_1_x
+        platform_1_y, platform_1_z, platform_2_x = k.platform_1_y, k.platform_1_z, k.platform_2_x
+        platform_2_y, platform_2_z, platform_3_x = k.platform_2_y, k.platform_2_z, k.platform_3_x
+        platform_3_y, platform_3_z, platform_4_x = k.platform_3_y, k.platform_3_z, k.platform_4_x
+        platform_4_y, platform_4_z, platform_5_x = k.platform_4_y, k.platform_4_z, k.platform_5_x
+        platform_5_y, platform_5_z, platform_6_x = k.platform_5_y, k.platform_5_z, k.platform_6_x
+        platform_6_y, platform_6_z, within = k.platform_6_y, k.platform_6_z, k.within
+        if not are_usable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6):
             return Status.BAD_INPUT
         l1 = axis_l1 - offset_l1
         l2 = axis_l2 - offset_l2
@@ -1253,152 +670,156 @@ class Hexapod(IterativeForward):
         if not (l1 > 0.0 and l2 > 0.0 and l3 > 0.0 and l4 > 0.0 and l5 > 0.0 and l6 > 0.0):
             return Status.IMPOSSIBLE
         # joints of the platform, seen from its origin, in the orientation of the start
-        start_arm_1_x = platform_1_x*start_r11 + platform_1_y*start_r12 + platform_1_z*start_r13
-        start_arm_1_y = platform_1_x*start_r21 + platform_1_y*start_r22 + platform_1_z*start_r23
-        start_arm_1_z = platform_1_x*start_r31 + platform_1_y*start_r32 + platform_1_z*start_r33
-        start_arm_2_x = platform_2_x*start_r11 + platform_2_y*start_r12 + platform_2_z*start_r13
-        start_arm_2_y = platform_2_x*start_r21 + platform_2_y*start_r22 + platform_2_z*start_r23
-        start_arm_2_z = platform_2_x*start_r31 + platform_2_y*start_r32 + platform_2_z*start_r33
-        start_arm_3_x = platform_3_x*start_r11 + platform_3_y*start_r12 + platform_3_z*start_r13
-        start_arm_3_y = platform_3_x*start_r21 + platform_3_y*start_r22 + platform_3_z*start_r23
-        start_arm_3_z = platform_3_x*start_r31 + platform_3_y*start_r32 + platform_3_z*start_r33
-        start_arm_4_x = platform_4_x*start_r11 + platform_4_y*start_r12 + platform_4_z*start_r13
-        start_arm_4_y = platform_4_x*start_r21 + platform_4_y*start_r22 + platform_4_z*start_r23
-        start_arm_4_z = platform_4_x*start_r31 + platform_4_y*start_r32 + platform_4_z*start_r33
-        start_arm_5_x = platform_5_x*start_r11 + platform_5_y*start_r12 + platform_5_z*start_r13
-        start_arm_5_y = platform_5_x*start_r21 + platform_5_y*start_r22 + platform_5_z*start_r23
-        start_arm_5_z = platform_5_x*start_r31 + platform_5_y*start_r32 + platform_5_z*start_r33
-        start_arm_6_x = platform_6_x*start_r11 + platform_6_y*start_r12 + platform_6_z*start_r13
-        start_arm_6_y = platform_6_x*start_r21 + platform_6_y*start_r22 + platform_6_z*start_r23
-        start_arm_6_z = platform_6_x*start_r31 + platform_6_y*start_r32 + platform_6_z*start_r33
+        start_arm_1_x = platform_1_x * start_r11 + platform_1_y * start_r12 + platform_1_z * start_r13
+        start_arm_1_y = platform_1_x * start_r21 + platform_1_y * start_r22 + platform_1_z * start_r23
+        start_arm_1_z = platform_1_x * start_r31 + platform_1_y * start_r32 + platform_1_z * start_r33
+        start_arm_2_x = platform_2_x * start_r11 + platform_2_y * start_r12 + platform_2_z * start_r13
+        start_arm_2_y = platform_2_x * start_r21 + platform_2_y * start_r22 + platform_2_z * start_r23
+        start_arm_2_z = platform_2_x * start_r31 + platform_2_y * start_r32 + platform_2_z * start_r33
+        start_arm_3_x = platform_3_x * start_r11 + platform_3_y * start_r12 + platform_3_z * start_r13
+        start_arm_3_y = platform_3_x * start_r21 + platform_3_y * start_r22 + platform_3_z * start_r23
+        start_arm_3_z = platform_3_x * start_r31 + platform_3_y * start_r32 + platform_3_z * start_r33
+        start_arm_4_x = platform_4_x * start_r11 + platform_4_y * start_r12 + platform_4_z * start_r13
+        start_arm_4_y = platform_4_x * start_r21 + platform_4_y * start_r22 + platform_4_z * start_r23
+        start_arm_4_z = platform_4_x * start_r31 + platform_4_y * start_r32 + platform_4_z * start_r33
+        start_arm_5_x = platform_5_x * start_r11 + platform_5_y * start_r12 + platform_5_z * start_r13
+        start_arm_5_y = platform_5_x * start_r21 + platform_5_y * start_r22 + platform_5_z * start_r23
+        start_arm_5_z = platform_5_x * start_r31 + platform_5_y * start_r32 + platform_5_z * start_r33
+        start_arm_6_x = platform_6_x * start_r11 + platform_6_y * start_r12 + platform_6_z * start_r13
+        start_arm_6_y = platform_6_x * start_r21 + platform_6_y * start_r22 + platform_6_z * start_r23
+        start_arm_6_z = platform_6_x * start_r31 + platform_6_y * start_r32 + platform_6_z * start_r33
         # Newton's method: every pass improves the pose until all legs have their lengths
         x, y, z, roll, pitch, yaw, fitted = start_x, start_y, start_z, 0.0, 0.0, 0.0, False
         for _ in range(20):
             cos_pitch = cos(pitch)
             cos_yaw = cos(yaw)
-            turned_11 = cos_pitch*cos_yaw  # rotation from the start: Rz(yaw) Ry(pitch) Rx(roll)
+            turned_11 = cos_pitch * cos_yaw  # rotation from the start: Rz(yaw) Ry(pitch) Rx(roll)
             cos_roll = cos(roll)
             sin_roll = sin(roll)
             sin_pitch = sin(pitch)
             sin_yaw = sin(yaw)
-            cos_roll_times_sin_yaw = cos_roll*sin_yaw
-            cos_yaw_times_sin_roll = cos_yaw*sin_roll
-            turned_12 = cos_yaw_times_sin_roll*sin_pitch - cos_roll_times_sin_yaw
-            sin_roll_times_sin_yaw = sin_roll*sin_yaw
-            cos_roll_times_cos_yaw = cos_roll*cos_yaw
-            turned_13 = sin_roll_times_sin_yaw + cos_roll_times_cos_yaw*sin_pitch
-            arm_1_x = start_arm_1_x*turned_11 + start_arm_1_y*turned_12 + start_arm_1_z*turned_13
+            cos_roll_times_sin_yaw = cos_roll * sin_yaw
+            cos_yaw_times_sin_roll = cos_yaw * sin_roll
+            turned_12 = cos_yaw_times_sin_roll * sin_pitch - cos_roll_times_sin_yaw
+            sin_roll_times_sin_yaw = sin_roll * sin_yaw
+            cos_roll_times_cos_yaw = cos_roll * cos_yaw
+            turned_13 = sin_roll_times_sin_yaw + cos_roll_times_cos_yaw * sin_pitch
+            arm_1_x = start_arm_1_x * turned_11 + start_arm_1_y * turned_12 + start_arm_1_z * turned_13
             span_1_x = arm_1_x + x - base_1_x  # leg 1: vector from its joint on the base to its joint on the platform
-            turned_21 = cos_pitch*sin_yaw
-            turned_22 = cos_roll_times_cos_yaw + sin_pitch*sin_roll_times_sin_yaw
-            turned_23 = cos_roll_times_sin_yaw*sin_pitch - cos_yaw_times_sin_roll
-            arm_1_y = start_arm_1_x*turned_21 + start_arm_1_y*turned_22 + start_arm_1_z*turned_23
+            turned_21 = cos_pitch * sin_yaw
+            turned_22 = cos_roll_times_cos_yaw + sin_pitch * sin_roll_times_sin_yaw
+            turned_23 = cos_roll_times_sin_yaw * sin_pitch - cos_yaw_times_sin_roll
+            arm_1_y = start_arm_1_x * turned_21 + start_arm_1_y * turned_22 + start_arm_1_z * turned_23
             span_1_y = arm_1_y + y - base_1_y
-            turned_32 = cos_pitch*sin_roll
-            turned_33 = cos_pitch*cos_roll
-            arm_1_z = start_arm_1_y*turned_32 + start_arm_1_z*turned_33 - start_arm_1_x*sin_pitch
+            turned_32 = cos_pitch * sin_roll
+            turned_33 = cos_pitch * cos_roll
+            arm_1_z = start_arm_1_y * turned_32 + start_arm_1_z * turned_33 - start_arm_1_x * sin_pitch
             span_1_z = arm_1_z + z - base_1_z
-            length_1 = sqrt(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
+            length_1 = sqrt(span_1_x * span_1_x + span_1_y * span_1_y + span_1_z * span_1_z)
             error_1 = length_1 - l1  # length error of leg 1
-            arm_2_x = start_arm_2_x*turned_11 + start_arm_2_y*turned_12 + start_arm_2_z*turned_13
+            arm_2_x = start_arm_2_x * turned_11 + start_arm_2_y * turned_12 + start_arm_2_z * turned_13
             span_2_x = arm_2_x + x - base_2_x  # leg 2: vector from its joint on the base to its joint on the platform
-            arm_2_y = start_arm_2_x*turned_21 + start_arm_2_y*turned_22 + start_arm_2_z*turned_23
+            arm_2_y = start_arm_2_x * turned_21 + start_arm_2_y * turned_22 + start_arm_2_z * turned_23
             span_2_y = arm_2_y + y - base_2_y
-            arm_2_z = start_arm_2_y*turned_32 + start_arm_2_z*turned_33 - start_arm_2_x*sin_pitch
+            arm_2_z = start_arm_2_y * turned_32 + start_arm_2_z * turned_33 - start_arm_2_x * sin_pitch
             span_2_z = arm_2_z + z - base_2_z
-            length_2 = sqrt(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
+            length_2 = sqrt(span_2_x * span_2_x + span_2_y * span_2_y + span_2_z * span_2_z)
             error_2 = length_2 - l2  # length error of leg 2
-            arm_3_x = start_arm_3_x*turned_11 + start_arm_3_y*turned_12 + start_arm_3_z*turned_13
+            arm_3_x = start_arm_3_x * turned_11 + start_arm_3_y * turned_12 + start_arm_3_z * turned_13
             span_3_x = arm_3_x + x - base_3_x  # leg 3: vector from its joint on the base to its joint on the platform
-            arm_3_y = start_arm_3_x*turned_21 + start_arm_3_y*turned_22 + start_arm_3_z*turned_23
+            arm_3_y = start_arm_3_x * turned_21 + start_arm_3_y * turned_22 + start_arm_3_z * turned_23
             span_3_y = arm_3_y + y - base_3_y
-            arm_3_z = start_arm_3_y*turned_32 + start_arm_3_z*turned_33 - start_arm_3_x*sin_pitch
+            arm_3_z = start_arm_3_y * turned_32 + start_arm_3_z * turned_33 - start_arm_3_x * sin_pitch
             span_3_z = arm_3_z + z - base_3_z
-            length_3 = sqrt(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
+            length_3 = sqrt(span_3_x * span_3_x + span_3_y * span_3_y + span_3_z * span_3_z)
             error_3 = length_3 - l3  # length error of leg 3
-            arm_4_x = start_arm_4_x*turned_11 + start_arm_4_y*turned_12 + start_arm_4_z*turned_13
+            arm_4_x = start_arm_4_x * turned_11 + start_arm_4_y * turned_12 + start_arm_4_z * turned_13
             span_4_x = arm_4_x + x - base_4_x  # leg 4: vector from its joint on the base to its joint on the platform
-            arm_4_y = start_arm_4_x*turned_21 + start_arm_4_y*turned_22 + start_arm_4_z*turned_23
+            arm_4_y = start_arm_4_x * turned_21 + start_arm_4_y * turned_22 + start_arm_4_z * turned_23
             span_4_y = arm_4_y + y - base_4_y
-            arm_4_z = start_arm_4_y*turned_32 + start_arm_4_z*turned_33 - start_arm_4_x*sin_pitch
+            arm_4_z = start_arm_4_y * turned_32 + start_arm_4_z * turned_33 - start_arm_4_x * sin_pitch
             span_4_z = arm_4_z + z - base_4_z
-            length_4 = sqrt(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
+            length_4 = sqrt(span_4_x * span_4_x + span_4_y * span_4_y + span_4_z * span_4_z)
             error_4 = length_4 - l4  # length error of leg 4
-            arm_5_x = start_arm_5_x*turned_11 + start_arm_5_y*turned_12 + start_arm_5_z*turned_13
+            arm_5_x = start_arm_5_x * turned_11 + start_arm_5_y * turned_12 + start_arm_5_z * turned_13
             span_5_x = arm_5_x + x - base_5_x  # leg 5: vector from its joint on the base to its joint on the platform
-            arm_5_y = start_arm_5_x*turned_21 + start_arm_5_y*turned_22 + start_arm_5_z*turned_23
+            arm_5_y = start_arm_5_x * turned_21 + start_arm_5_y * turned_22 + start_arm_5_z * turned_23
             span_5_y = arm_5_y + y - base_5_y
-            arm_5_z = start_arm_5_y*turned_32 + start_arm_5_z*turned_33 - start_arm_5_x*sin_pitch
+            arm_5_z = start_arm_5_y * turned_32 + start_arm_5_z * turned_33 - start_arm_5_x * sin_pitch
             span_5_z = arm_5_z + z - base_5_z
-            length_5 = sqrt(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
+            length_5 = sqrt(span_5_x * span_5_x + span_5_y * span_5_y + span_5_z * span_5_z)
             error_5 = length_5 - l5  # length error of leg 5
-            arm_6_x = start_arm_6_x*turned_11 + start_arm_6_y*turned_12 + start_arm_6_z*turned_13
+            arm_6_x = start_arm_6_x * turned_11 + start_arm_6_y * turned_12 + start_arm_6_z * turned_13
             span_6_x = arm_6_x + x - base_6_x  # leg 6: vector from its joint on the base to its joint on the platform
-            arm_6_y = start_arm_6_x*turned_21 + start_arm_6_y*turned_22 + start_arm_6_z*turned_23
+            arm_6_y = start_arm_6_x * turned_21 + start_arm_6_y * turned_22 + start_arm_6_z * turned_23
             span_6_y = arm_6_y + y - base_6_y
-            arm_6_z = start_arm_6_y*turned_32 + start_arm_6_z*turned_33 - start_arm_6_x*sin_pitch
+            arm_6_z = start_arm_6_y * turned_32 + start_arm_6_z * turned_33 - start_arm_6_x * sin_pitch
             span_6_z = arm_6_z + z - base_6_z
-            length_6 = sqrt(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
+            length_6 = sqrt(span_6_x * span_6_x + span_6_y * span_6_y + span_6_z * span_6_z)
             error_6 = length_6 - l6  # length error of leg 6
             # whether every leg has its length
             fit = (
-                (abs(error_1) <= within) and (abs(error_2) <= within) and (abs(error_3) <= within)
-                and (abs(error_4) <= within) and (abs(error_5) <= within) and (abs(error_6) <= within)
+                (abs(error_1) <= within)
+                and (abs(error_2) <= within)
+                and (abs(error_3) <= within)
+                and (abs(error_4) <= within)
+                and (abs(error_5) <= within)
+                and (abs(error_6) <= within)
             )
             # leg 1 as a line: unit vector, and its moment about the platform's origin
             divisor_1 = length_1 if length_1 > machine_scale_times_shortest_link else 1.0
-            one_by_length_1 = 1.0/divisor_1
-            along_1_x = one_by_length_1*span_1_x
-            along_1_y = one_by_length_1*span_1_y
-            along_1_z = one_by_length_1*span_1_z
-            moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*one_by_platform_radius
-            moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*one_by_platform_radius
-            moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*one_by_platform_radius
+            one_by_length_1 = 1.0 / divisor_1
+            along_1_x = one_by_length_1 * span_1_x
+            along_1_y = one_by_length_1 * span_1_y
+            along_1_z = one_by_length_1 * span_1_z
+            moment_1_x = (along_1_z * arm_1_y - along_1_y * arm_1_z) * one_by_platform_radius
+            moment_1_y = (along_1_x * arm_1_z - along_1_z * arm_1_x) * one_by_platform_radius
+            moment_1_z = (along_1_y * arm_1_x - along_1_x * arm_1_y) * one_by_platform_radius
             # leg 2 as a line: unit vector, and its moment about the platform's origin
             divisor_2 = length_2 if length_2 > machine_scale_times_shortest_link else 1.0
-            one_by_length_2 = 1.0/divisor_2
-            along_2_x = one_by_length_2*span_2_x
-            along_2_y = one_by_length_2*span_2_y
-            along_2_z = one_by_length_2*span_2_z
-            moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*one_by_platform_radius
-            moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*one_by_platform_radius
-            moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*one_by_platform_radius
+            one_by_length_2 = 1.0 / divisor_2
+            along_2_x = one_by_length_2 * span_2_x
+            along_2_y = one_by_length_2 * span_2_y
+            along_2_z = one_by_length_2 * span_2_z
+            moment_2_x = (along_2_z * arm_2_y - along_2_y * arm_2_z) * one_by_platform_radius
+            moment_2_y = (along_2_x * arm_2_z - along_2_z * arm_2_x) * one_by_platform_radius
+            moment_2_z = (along_2_y * arm_2_x - along_2_x * arm_2_y) * one_by_platform_radius
             # leg 3 as a line: unit vector, and its moment about the platform's origin
             divisor_3 = length_3 if length_3 > machine_scale_times_shortest_link else 1.0
-            one_by_length_3 = 1.0/divisor_3
-            along_3_x = one_by_length_3*span_3_x
-            along_3_y = one_by_length_3*span_3_y
-            along_3_z = one_by_length_3*span_3_z
-            moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*one_by_platform_radius
-            moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*one_by_platform_radius
-            moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*one_by_platform_radius
+            one_by_length_3 = 1.0 / divisor_3
+            along_3_x = one_by_length_3 * span_3_x
+            along_3_y = one_by_length_3 * span_3_y
+            along_3_z = one_by_length_3 * span_3_z
+            moment_3_x = (along_3_z * arm_3_y - along_3_y * arm_3_z) * one_by_platform_radius
+            moment_3_y = (along_3_x * arm_3_z - along_3_z * arm_3_x) * one_by_platform_radius
+            moment_3_z = (along_3_y * arm_3_x - along_3_x * arm_3_y) * one_by_platform_radius
             # leg 4 as a line: unit vector, and its moment about the platform's origin
             divisor_4 = length_4 if length_4 > machine_scale_times_shortest_link else 1.0
-            one_by_length_4 = 1.0/divisor_4
-            along_4_x = one_by_length_4*span_4_x
-            along_4_y = one_by_length_4*span_4_y
-            along_4_z = one_by_length_4*span_4_z
-            moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*one_by_platform_radius
-            moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*one_by_platform_radius
-            moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*one_by_platform_radius
+            one_by_length_4 = 1.0 / divisor_4
+            along_4_x = one_by_length_4 * span_4_x
+            along_4_y = one_by_length_4 * span_4_y
+            along_4_z = one_by_length_4 * span_4_z
+            moment_4_x = (along_4_z * arm_4_y - along_4_y * arm_4_z) * one_by_platform_radius
+            moment_4_y = (along_4_x * arm_4_z - along_4_z * arm_4_x) * one_by_platform_radius
+            moment_4_z = (along_4_y * arm_4_x - along_4_x * arm_4_y) * one_by_platform_radius
             # leg 5 as a line: unit vector, and its moment about the platform's origin
             divisor_5 = length_5 if length_5 > machine_scale_times_shortest_link else 1.0
-            one_by_length_5 = 1.0/divisor_5
-            along_5_x = one_by_length_5*span_5_x
-            along_5_y = one_by_length_5*span_5_y
-            along_5_z = one_by_length_5*span_5_z
-            moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*one_by_platform_radius
-            moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*one_by_platform_radius
-            moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*one_by_platform_radius
+            one_by_length_5 = 1.0 / divisor_5
+            along_5_x = one_by_length_5 * span_5_x
+            along_5_y = one_by_length_5 * span_5_y
+            along_5_z = one_by_length_5 * span_5_z
+            moment_5_x = (along_5_z * arm_5_y - along_5_y * arm_5_z) * one_by_platform_radius
+            moment_5_y = (along_5_x * arm_5_z - along_5_z * arm_5_x) * one_by_platform_radius
+            moment_5_z = (along_5_y * arm_5_x - along_5_x * arm_5_y) * one_by_platform_radius
             # leg 6 as a line: unit vector, and its moment about the platform's origin
             divisor_6 = length_6 if length_6 > machine_scale_times_shortest_link else 1.0
-            one_by_length_6 = 1.0/divisor_6
-            along_6_x = one_by_length_6*span_6_x
-            along_6_y = one_by_length_6*span_6_y
-            along_6_z = one_by_length_6*span_6_z
-            moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*one_by_platform_radius
-            moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*one_by_platform_radius
-            moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*one_by_platform_radius
+            one_by_length_6 = 1.0 / divisor_6
+            along_6_x = one_by_length_6 * span_6_x
+            along_6_y = one_by_length_6 * span_6_y
+            along_6_z = one_by_length_6 * span_6_z
+            moment_6_x = (along_6_z * arm_6_y - along_6_y * arm_6_z) * one_by_platform_radius
+            moment_6_y = (along_6_x * arm_6_z - along_6_z * arm_6_x) * one_by_platform_radius
+            moment_6_z = (along_6_y * arm_6_x - along_6_x * arm_6_y) * one_by_platform_radius
             # Newton step: twist that cancels the length errors
             determinant, x_rate, y_rate, z_rate, swing_x, swing_y, swing_z = solve(
                 (
@@ -1411,72 +832,125 @@ class Hexapod(IterativeForward):
                 ),
                 ((-error_1,), (-error_2,), (-error_3,), (-error_4,), (-error_5,), (-error_6,)),
             )
-            spin_x = one_by_platform_radius*swing_x
-            spin_y = one_by_platform_radius*swing_y
+            spin_x = one_by_platform_radius * swing_x
+            spin_y = one_by_platform_radius * swing_y
             cos_pitch_divisor = cos_pitch if abs(cos_pitch) > 1e-11 else 1.0
-            roll_rate = (spin_x*cos_yaw + spin_y*sin_yaw)/cos_pitch_divisor
-            pitch_rate = spin_y*cos_yaw - spin_x*sin_yaw
-            spin_z = one_by_platform_radius*swing_z
-            yaw_rate = spin_z + roll_rate*sin_pitch
+            roll_rate = (spin_x * cos_yaw + spin_y * sin_yaw) / cos_pitch_divisor
+            pitch_rate = spin_y * cos_yaw - spin_x * sin_yaw
+            spin_z = one_by_platform_radius * swing_z
+            yaw_rate = spin_z + roll_rate * sin_pitch
             # size of the step, in characteristic lengths and radians
             size = root(
-                pitch_rate*pitch_rate + roll_rate*roll_rate + yaw_rate*yaw_rate
-                + (x_rate*x_rate + y_rate*y_rate + z_rate*z_rate)/machine_scale_squared
+                pitch_rate * pitch_rate
+                + roll_rate * roll_rate
+                + yaw_rate * yaw_rate
+                + (x_rate * x_rate + y_rate * y_rate + z_rate * z_rate) / machine_scale_squared
             )
-            stretch = 2.0*size if size > 0.5 else 1.0
-            one_by_stretch = 1.0/stretch
+            stretch = 2.0 * size if size > 0.5 else 1.0
+            one_by_stretch = 1.0 / stretch
             if (fit) and (fitted):
                 break
-            x = x + one_by_stretch*x_rate
-            y = y + one_by_stretch*y_rate
-            z = z + one_by_stretch*z_rate
-            roll = roll + one_by_stretch*roll_rate
-            pitch = pitch + one_by_stretch*pitch_rate
-            yaw = yaw + one_by_stretch*yaw_rate
+            x = x + one_by_stretch * x_rate
+            y = y + one_by_stretch * y_rate
+            z = z + one_by_stretch * z_rate
+            roll = roll + one_by_stretch * roll_rate
+            pitch = pitch + one_by_stretch * pitch_rate
+            yaw = yaw + one_by_stretch * yaw_rate
             fitted = fit
         else:
             return Status.IMPOSSIBLE
         # the other assembly mode
-        if not (assembly_sign*determinant > 0.0):
+        if not (assembly_sign * determinant > 0.0):
             return Status.IMPOSSIBLE
-        r11 = start_r11*turned_11 + start_r21*turned_12 + start_r31*turned_13  # the start, turned
-        r12 = start_r12*turned_11 + start_r22*turned_12 + start_r32*turned_13
-        r13 = start_r13*turned_11 + start_r23*turned_12 + start_r33*turned_13
-        r21 = start_r11*turned_21 + start_r21*turned_22 + start_r31*turned_23
-        r22 = start_r12*turned_21 + start_r22*turned_22 + start_r32*turned_23
-        r23 = start_r13*turned_21 + start_r23*turned_22 + start_r33*turned_23
-        r31 = start_r21*turned_32 + start_r31*turned_33 - start_r11*sin_pitch
-        r32 = start_r22*turned_32 + start_r32*turned_33 - start_r12*sin_pitch
-        r33 = start_r23*turned_32 + start_r33*turned_33 - start_r13*sin_pitch
+        r11 = start_r11 * turned_11 + start_r21 * turned_12 + start_r31 * turned_13  # the start, turned
+        r12 = start_r12 * turned_11 + start_r22 * turned_12 + start_r32 * turned_13
+        r13 = start_r13 * turned_11 + start_r23 * turned_12 + start_r33 * turned_13
+        r21 = start_r11 * turned_21 + start_r21 * turned_22 + start_r31 * turned_23
+        r22 = start_r12 * turned_21 + start_r22 * turned_22 + start_r32 * turned_23
+        r23 = start_r13 * turned_21 + start_r23 * turned_22 + start_r33 * turned_23
+        r31 = start_r21 * turned_32 + start_r31 * turned_33 - start_r11 * sin_pitch
+        r32 = start_r22 * turned_32 + start_r32 * turned_33 - start_r12 * sin_pitch
+        r33 = start_r23 * turned_32 + start_r33 * turned_33 - start_r13 * sin_pitch
         return (
-            x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, determinant, along_1_x, along_1_y, along_1_z,
-            moment_1_x, moment_1_y, moment_1_z, along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z,
-            along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z, along_4_x, along_4_y, along_4_z,
-            moment_4_x, moment_4_y, moment_4_z, along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z,
-            along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z,
+            x,
+            y,
+            z,
+            r11,
+            r12,
+            r13,
+            r21,
+            r22,
+            r23,
+            r31,
+            r32,
+            r33,
+            determinant,
+            along_1_x,
+            along_1_y,
+            along_1_z,
+            moment_1_x,
+            moment_1_y,
+            moment_1_z,
+            along_2_x,
+            along_2_y,
+            along_2_z,
+            moment_2_x,
+            moment_2_y,
+            moment_2_z,
+            along_3_x,
+            along_3_y,
+            along_3_z,
+            moment_3_x,
+            moment_3_y,
+            moment_3_z,
+            along_4_x,
+            along_4_y,
+            along_4_z,
+            moment_4_x,
+            moment_4_y,
+            moment_4_z,
+            along_5_x,
+            along_5_y,
+            along_5_z,
+            moment_5_x,
+            moment_5_y,
+            moment_5_z,
+            along_6_x,
+            along_6_y,
+            along_6_z,
+            moment_6_x,
+            moment_6_y,
+            moment_6_z,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self._constants
-        home_r11 = k.home_r11
-        home_r12 = k.home_r12
-        home_r13 = k.home_r13
-        home_r21 = k.home_r21
-        home_r22 = k.home_r22
-        home_r23 = k.home_r23
-        home_r31 = k.home_r31
-        home_r32 = k.home_r32
-        home_r33 = k.home_r33
-        home_x = k.home_x
-        home_y = k.home_y
-        home_z = k.home_z
+        home_r11, home_r12, home_r13, home_r21, home_r22 = k.home_r11, k.home_r12, k.home_r13, k.home_r21, k.home_r22
+        home_r23, home_r31, home_r32, home_r33, home_x = k.home_r23, k.home_r31, k.home_r32, k.home_r33, k.home_x
+        home_y, home_z = k.home_y, k.home_z
         # pose of the platform, by Newton's method from the home pose
         found = self._find_platform(
             (
-                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
-                home_r22, home_r23, home_r31, home_r32, home_r33, home_x, home_y, home_z,
+                axis_l1,
+                axis_l2,
+                axis_l3,
+                axis_l4,
+                axis_l5,
+                axis_l6,
+                home_r11,
+                home_r12,
+                home_r13,
+                home_r21,
+                home_r22,
+                home_r23,
+                home_r31,
+                home_r32,
+                home_r33,
+                home_x,
+                home_y,
+                home_z,
             )
         )
         if isinstance(found, Status):
@@ -1488,19 +962,32 @@ class Hexapod(IterativeForward):
         """The same, found from a given start."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         start_x, start_y, start_z = start_position
-        (
-            (start_r11, start_r12, start_r13),
-            (start_r21, start_r22, start_r23),
-            (start_r31, start_r32, start_r33),
-        ) = start_rotation
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= start_x <= 1e9 and -1e9 <= start_y <= 1e9 and -1e9 <= start_z <= 1e9):
+        (start_r11, start_r12, start_r13), (start_r21, start_r22, start_r23), (start_r31, start_r32, start_r33) = (
+            start_rotation
+        )
+        if not are_usable(start_x, start_y, start_z):
             return Status.BAD_INPUT
         # pose of the platform, by Newton's method from the given start
         found = self._find_platform(
             (
-                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_r11, start_r12, start_r13, start_r21,
-                start_r22, start_r23, start_r31, start_r32, start_r33, start_x, start_y, start_z,
+                axis_l1,
+                axis_l2,
+                axis_l3,
+                axis_l4,
+                axis_l5,
+                axis_l6,
+                start_r11,
+                start_r12,
+                start_r13,
+                start_r21,
+                start_r22,
+                start_r23,
+                start_r31,
+                start_r32,
+                start_r33,
+                start_x,
+                start_y,
+                start_z,
             )
         )
         if isinstance(found, Status):
@@ -1512,23 +999,30 @@ class Hexapod(IterativeForward):
         """The rotation of the frame."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self._constants
-        home_r11 = k.home_r11
-        home_r12 = k.home_r12
-        home_r13 = k.home_r13
-        home_r21 = k.home_r21
-        home_r22 = k.home_r22
-        home_r23 = k.home_r23
-        home_r31 = k.home_r31
-        home_r32 = k.home_r32
-        home_r33 = k.home_r33
-        home_x = k.home_x
-        home_y = k.home_y
-        home_z = k.home_z
+        home_r11, home_r12, home_r13, home_r21, home_r22 = k.home_r11, k.home_r12, k.home_r13, k.home_r21, k.home_r22
+        home_r23, home_r31, home_r32, home_r33, home_x = k.home_r23, k.home_r31, k.home_r32, k.home_r33, k.home_x
+        home_y, home_z = k.home_y, k.home_z
         # pose of the platform, by Newton's method from the home pose
         found = self._find_platform(
             (
-                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
-                home_r22, home_r23, home_r31, home_r32, home_r33, home_x, home_y, home_z,
+                axis_l1,
+                axis_l2,
+                axis_l3,
+                axis_l4,
+                axis_l5,
+                axis_l6,
+                home_r11,
+                home_r12,
+                home_r13,
+                home_r21,
+                home_r22,
+                home_r23,
+                home_r31,
+                home_r32,
+                home_r33,
+                home_x,
+                home_y,
+                home_z,
             )
         )
         if isinstance(found, Status):
@@ -1537,357 +1031,268 @@ class Hexapod(IterativeForward):
         return ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         k = self._constants
-        assembly_sign = k.assembly_sign
-        base_1_x = k.base_1_x
-        base_1_y = k.base_1_y
-        base_1_z = k.base_1_z
-        base_2_x = k.base_2_x
-        base_2_y = k.base_2_y
-        base_2_z = k.base_2_z
-        base_3_x = k.base_3_x
-        base_3_y = k.base_3_y
-        base_3_z = k.base_3_z
-        base_4_x = k.base_4_x
-        base_4_y = k.base_4_y
-        base_4_z = k.base_4_z
-        base_5_x = k.base_5_x
-        base_5_y = k.base_5_y
-        base_5_z = k.base_5_z
-        base_6_x = k.base_6_x
-        base_6_y = k.base_6_y
-        base_6_z = k.base_6_z
-        home_along_1_x = k.home_along_1_x
-        home_along_1_y = k.home_along_1_y
-        home_along_1_z = k.home_along_1_z
-        home_along_2_x = k.home_along_2_x
-        home_along_2_y = k.home_along_2_y
-        home_along_2_z = k.home_along_2_z
-        home_along_3_x = k.home_along_3_x
-        home_along_3_y = k.home_along_3_y
-        home_along_3_z = k.home_along_3_z
-        home_along_4_x = k.home_along_4_x
-        home_along_4_y = k.home_along_4_y
-        home_along_4_z = k.home_along_4_z
-        home_along_5_x = k.home_along_5_x
-        home_along_5_y = k.home_along_5_y
-        home_along_5_z = k.home_along_5_z
-        home_along_6_x = k.home_along_6_x
-        home_along_6_y = k.home_along_6_y
-        home_along_6_z = k.home_along_6_z
-        least_cos_base = k.least_cos_base
-        least_cos_plate = k.least_cos_plate
-        machine_scale_times_shortest_link = k.machine_scale_times_shortest_link
-        min_type2_margin = k.min_type2_margin
-        offset_l1 = k.offset_l1
-        offset_l2 = k.offset_l2
-        offset_l3 = k.offset_l3
-        offset_l4 = k.offset_l4
-        offset_l5 = k.offset_l5
-        offset_l6 = k.offset_l6
-        one_by_platform_radius = k.one_by_platform_radius
-        plate_axis_1_x = k.plate_axis_1_x
-        plate_axis_1_y = k.plate_axis_1_y
-        plate_axis_1_z = k.plate_axis_1_z
-        plate_axis_2_x = k.plate_axis_2_x
-        plate_axis_2_y = k.plate_axis_2_y
-        plate_axis_2_z = k.plate_axis_2_z
-        plate_axis_3_x = k.plate_axis_3_x
-        plate_axis_3_y = k.plate_axis_3_y
-        plate_axis_3_z = k.plate_axis_3_z
-        plate_axis_4_x = k.plate_axis_4_x
-        plate_axis_4_y = k.plate_axis_4_y
-        plate_axis_4_z = k.plate_axis_4_z
-        plate_axis_5_x = k.plate_axis_5_x
-        plate_axis_5_y = k.plate_axis_5_y
-        plate_axis_5_z = k.plate_axis_5_z
-        plate_axis_6_x = k.plate_axis_6_x
-        plate_axis_6_y = k.plate_axis_6_y
-        plate_axis_6_z = k.plate_axis_6_z
-        platform_1_x = k.platform_1_x
-        platform_1_y = k.platform_1_y
-        platform_1_z = k.platform_1_z
-        platform_2_x = k.platform_2_x
-        platform_2_y = k.platform_2_y
-        platform_2_z = k.platform_2_z
-        platform_3_x = k.platform_3_x
-        platform_3_y = k.platform_3_y
-        platform_3_z = k.platform_3_z
-        platform_4_x = k.platform_4_x
-        platform_4_y = k.platform_4_y
-        platform_4_z = k.platform_4_z
-        platform_5_x = k.platform_5_x
-        platform_5_y = k.platform_5_y
-        platform_5_z = k.platform_5_z
-        platform_6_x = k.platform_6_x
-        platform_6_y = k.platform_6_y
-        platform_6_z = k.platform_6_z
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
+        assembly_sign, base_1_x, base_1_y, base_1_z = k.assembly_sign, k.base_1_x, k.base_1_y, k.base_1_z
+        base_2_x, base_2_y, base_2_z, base_3_x, base_3_y = k.base_2_x, k.base_2_y, k.base_2_z, k.base_3_x, k.base_3_y
+        base_3_z, base_4_x, base_4_y, base_4_z, base_5_x = k.base_3_z, k.base_4_x, k.base_4_y, k.base_4_z, k.base_5_x
+        base_5_y, base_5_z, base_6_x, base_6_y, base_6_z = k.base_5_y, k.base_5_z, k.base_6_x, k.base_6_y, k.base_6_z
+        home_along_1_x, home_along_1_y, home_along_1_z = k.home_along_1_x, k.home_along_1_y, k.home_along_1_z
+        home_along_2_x, home_along_2_y, home_along_2_z = k.home_along_2_x, k.home_along_2_y, k.home_along_2_z
+        home_along_3_x, home_along_3_y, home_along_3_z = k.home_along_3_x, k.home_along_3_y, k.home_along_3_z
+        home_along_4_x, home_along_4_y, home_along_4_z = k.home_along_4_x, k.home_along_4_y, k.home_along_4_z
+        home_along_5_x, home_along_5_y, home_along_5_z = k.home_along_5_x, k.home_along_5_y, k.home_along_5_z
+        home_along_6_x, home_along_6_y, home_along_6_z = k.home_along_6_x, k.home_along_6_y, k.home_along_6_z
+        least_cos_base, least_cos_plate = k.least_cos_base, k.least_cos_plate
+        machine_scale_times_shortest_link, min_type2_margin = k.machine_scale_times_shortest_link, k.min_type2_margin
+        offset_l1, offset_l2, offset_l3, offset_l4 = k.offset_l1, k.offset_l2, k.offset_l3, k.offset_l4
+        offset_l5, offset_l6, one_by_platform_radius = k.offset_l5, k.offset_l6, k.one_by_platform_radius
+        plate_axis_1_x, plate_axis_1_y, plate_axis_1_z = k.plate_axis_1_x, k.plate_axis_1_y, k.plate_axis_1_z
+        plate_axis_2_x, plate_axis_2_y, plate_axis_2_z = k.plate_axis_2_x, k.plate_axis_2_y, k.plate_axis_2_z
+        plate_axis_3_x, plate_axis_3_y, plate_axis_3_z = k.plate_axis_3_x, k.plate_axis_3_y, k.plate_axis_3_z
+        plate_axis_4_x, plate_axis_4_y, plate_axis_4_z = k.plate_axis_4_x, k.plate_axis_4_y, k.plate_axis_4_z
+        plate_axis_5_x, plate_axis_5_y, plate_axis_5_z = k.plate_axis_5_x, k.plate_axis_5_y, k.plate_axis_5_z
+        plate_axis_6_x, plate_axis_6_y, plate_axis_6_z = k.plate_axis_6_x, k.plate_axis_6_y, k.plate_axis_6_z
+        platform_1_x, platform_1_y, platform_1_z = k.platform_1_x, k.platform_1_y, k.platform_1_z
+        platform_2_x, platform_2_y, platform_2_z = k.platform_2_x, k.platform_2_y, k.platform_2_z
+        platform_3_x, platform_3_y, platform_3_z = k.platform_3_x, k.platform_3_y, k.platform_3_z
+        platform_4_x, platform_4_y, platform_4_z = k.platform_4_x, k.platform_4_y, k.platform_4_z
+        platform_5_x, platform_5_y, platform_5_z = k.platform_5_x, k.platform_5_y, k.platform_5_z
+        platform_6_x, platform_6_y, platform_6_z = k.platform_6_x, k.platform_6_y, k.platform_6_z
+        if not are_usable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
+        arm_1_x = platform_1_x * r11 + platform_1_y * r12 + platform_1_z * r13
         span_1_x = arm_1_x + x - base_1_x  # rod 1: known part of its vector
-        arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
+        arm_1_y = platform_1_x * r21 + platform_1_y * r22 + platform_1_z * r23
         span_1_y = arm_1_y + y - base_1_y
-        arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
+        arm_1_z = platform_1_x * r31 + platform_1_y * r32 + platform_1_z * r33
         span_1_z = arm_1_z + z - base_1_z
-        radicand_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z  # quadratic equation for l1: rod 1
-        l1 = (sqrt(radicand_l1) if radicand_l1 > 0.0 else 0.0)
+        # quadratic equation for l1: rod 1
+        radicand_l1 = span_1_x * span_1_x + span_1_y * span_1_y + span_1_z * span_1_z
+        l1 = sqrt(radicand_l1) if radicand_l1 > 0.0 else 0.0
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 1: without length it has no direction", 0.0)
-        arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
+        arm_2_x = platform_2_x * r11 + platform_2_y * r12 + platform_2_z * r13
         span_2_x = arm_2_x + x - base_2_x  # rod 2: known part of its vector
-        arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
+        arm_2_y = platform_2_x * r21 + platform_2_y * r22 + platform_2_z * r23
         span_2_y = arm_2_y + y - base_2_y
-        arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
+        arm_2_z = platform_2_x * r31 + platform_2_y * r32 + platform_2_z * r33
         span_2_z = arm_2_z + z - base_2_z
-        radicand_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z  # quadratic equation for l2: rod 2
-        l2 = (sqrt(radicand_l2) if radicand_l2 > 0.0 else 0.0)
+        # quadratic equation for l2: rod 2
+        radicand_l2 = span_2_x * span_2_x + span_2_y * span_2_y + span_2_z * span_2_z
+        l2 = sqrt(radicand_l2) if radicand_l2 > 0.0 else 0.0
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 2: without length it has no direction", 0.0)
-        arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
+        arm_3_x = platform_3_x * r11 + platform_3_y * r12 + platform_3_z * r13
         span_3_x = arm_3_x + x - base_3_x  # rod 3: known part of its vector
-        arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
+        arm_3_y = platform_3_x * r21 + platform_3_y * r22 + platform_3_z * r23
         span_3_y = arm_3_y + y - base_3_y
-        arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
+        arm_3_z = platform_3_x * r31 + platform_3_y * r32 + platform_3_z * r33
         span_3_z = arm_3_z + z - base_3_z
-        radicand_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z  # quadratic equation for l3: rod 3
-        l3 = (sqrt(radicand_l3) if radicand_l3 > 0.0 else 0.0)
+        # quadratic equation for l3: rod 3
+        radicand_l3 = span_3_x * span_3_x + span_3_y * span_3_y + span_3_z * span_3_z
+        l3 = sqrt(radicand_l3) if radicand_l3 > 0.0 else 0.0
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 3: without length it has no direction", 0.0)
-        arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
+        arm_4_x = platform_4_x * r11 + platform_4_y * r12 + platform_4_z * r13
         span_4_x = arm_4_x + x - base_4_x  # rod 4: known part of its vector
-        arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
+        arm_4_y = platform_4_x * r21 + platform_4_y * r22 + platform_4_z * r23
         span_4_y = arm_4_y + y - base_4_y
-        arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
+        arm_4_z = platform_4_x * r31 + platform_4_y * r32 + platform_4_z * r33
         span_4_z = arm_4_z + z - base_4_z
-        radicand_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z  # quadratic equation for l4: rod 4
-        l4 = (sqrt(radicand_l4) if radicand_l4 > 0.0 else 0.0)
+        # quadratic equation for l4: rod 4
+        radicand_l4 = span_4_x * span_4_x + span_4_y * span_4_y + span_4_z * span_4_z
+        l4 = sqrt(radicand_l4) if radicand_l4 > 0.0 else 0.0
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 4: without length it has no direction", 0.0)
-        arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
+        arm_5_x = platform_5_x * r11 + platform_5_y * r12 + platform_5_z * r13
         span_5_x = arm_5_x + x - base_5_x  # rod 5: known part of its vector
-        arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
+        arm_5_y = platform_5_x * r21 + platform_5_y * r22 + platform_5_z * r23
         span_5_y = arm_5_y + y - base_5_y
-        arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
+        arm_5_z = platform_5_x * r31 + platform_5_y * r32 + platform_5_z * r33
         span_5_z = arm_5_z + z - base_5_z
-        radicand_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z  # quadratic equation for l5: rod 5
-        l5 = (sqrt(radicand_l5) if radicand_l5 > 0.0 else 0.0)
+        # quadratic equation for l5: rod 5
+        radicand_l5 = span_5_x * span_5_x + span_5_y * span_5_y + span_5_z * span_5_z
+        l5 = sqrt(radicand_l5) if radicand_l5 > 0.0 else 0.0
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 5: without length it has no direction", 0.0)
-        arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
+        arm_6_x = platform_6_x * r11 + platform_6_y * r12 + platform_6_z * r13
         span_6_x = arm_6_x + x - base_6_x  # rod 6: known part of its vector
-        arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
+        arm_6_y = platform_6_x * r21 + platform_6_y * r22 + platform_6_z * r23
         span_6_y = arm_6_y + y - base_6_y
-        arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
+        arm_6_z = platform_6_x * r31 + platform_6_y * r32 + platform_6_z * r33
         span_6_z = arm_6_z + z - base_6_z
-        radicand_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z  # quadratic equation for l6: rod 6
-        l6 = (sqrt(radicand_l6) if radicand_l6 > 0.0 else 0.0)
+        # quadratic equation for l6: rod 6
+        radicand_l6 = span_6_x * span_6_x + span_6_y * span_6_y + span_6_z * span_6_z
+        l6 = sqrt(radicand_l6) if radicand_l6 > 0.0 else 0.0
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "leg 6: without length it has no direction", 0.0)
-        one_by_l1 = 1.0/l1
-        along_1_x = one_by_l1*span_1_x
-        along_1_y = one_by_l1*span_1_y
-        along_1_z = one_by_l1*span_1_z
-        cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
+        one_by_l1 = 1.0 / l1
+        along_1_x = one_by_l1 * span_1_x
+        along_1_y = one_by_l1 * span_1_y
+        along_1_z = one_by_l1 * span_1_z
+        cos_base_lean_1 = along_1_x * home_along_1_x + along_1_y * home_along_1_y + along_1_z * home_along_1_z
         # leg 1: its joint on the base bends beyond its cone
         if not (cos_base_lean_1 >= least_cos_base):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_base_lean_1*cos_base_lean_1) + 0.0, cos_base_lean_1 + 0.0)
-                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_base_lean_1 * cos_base_lean_1) + 0.0, cos_base_lean_1 + 0.0)
+                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 1: its joint on the base bends beyond its cone [deg]", missing)
-        one_by_l2 = 1.0/l2
-        along_2_x = one_by_l2*span_2_x
-        along_2_y = one_by_l2*span_2_y
-        along_2_z = one_by_l2*span_2_z
-        cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
+        one_by_l2 = 1.0 / l2
+        along_2_x = one_by_l2 * span_2_x
+        along_2_y = one_by_l2 * span_2_y
+        along_2_z = one_by_l2 * span_2_z
+        cos_base_lean_2 = along_2_x * home_along_2_x + along_2_y * home_along_2_y + along_2_z * home_along_2_z
         # leg 2: its joint on the base bends beyond its cone
         if not (cos_base_lean_2 >= least_cos_base):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_base_lean_2*cos_base_lean_2) + 0.0, cos_base_lean_2 + 0.0)
-                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_base_lean_2 * cos_base_lean_2) + 0.0, cos_base_lean_2 + 0.0)
+                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 2: its joint on the base bends beyond its cone [deg]", missing)
-        one_by_l3 = 1.0/l3
-        along_3_x = one_by_l3*span_3_x
-        along_3_y = one_by_l3*span_3_y
-        along_3_z = one_by_l3*span_3_z
-        cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
+        one_by_l3 = 1.0 / l3
+        along_3_x = one_by_l3 * span_3_x
+        along_3_y = one_by_l3 * span_3_y
+        along_3_z = one_by_l3 * span_3_z
+        cos_base_lean_3 = along_3_x * home_along_3_x + along_3_y * home_along_3_y + along_3_z * home_along_3_z
         # leg 3: its joint on the base bends beyond its cone
         if not (cos_base_lean_3 >= least_cos_base):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_base_lean_3*cos_base_lean_3) + 0.0, cos_base_lean_3 + 0.0)
-                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_base_lean_3 * cos_base_lean_3) + 0.0, cos_base_lean_3 + 0.0)
+                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 3: its joint on the base bends beyond its cone [deg]", missing)
-        one_by_l4 = 1.0/l4
-        along_4_x = one_by_l4*span_4_x
-        along_4_y = one_by_l4*span_4_y
-        along_4_z = one_by_l4*span_4_z
-        cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
+        one_by_l4 = 1.0 / l4
+        along_4_x = one_by_l4 * span_4_x
+        along_4_y = one_by_l4 * span_4_y
+        along_4_z = one_by_l4 * span_4_z
+        cos_base_lean_4 = along_4_x * home_along_4_x + along_4_y * home_along_4_y + along_4_z * home_along_4_z
         # leg 4: its joint on the base bends beyond its cone
         if not (cos_base_lean_4 >= least_cos_base):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_base_lean_4*cos_base_lean_4) + 0.0, cos_base_lean_4 + 0.0)
-                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_base_lean_4 * cos_base_lean_4) + 0.0, cos_base_lean_4 + 0.0)
+                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 4: its joint on the base bends beyond its cone [deg]", missing)
-        one_by_l5 = 1.0/l5
-        along_5_x = one_by_l5*span_5_x
-        along_5_y = one_by_l5*span_5_y
-        along_5_z = one_by_l5*span_5_z
-        cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
+        one_by_l5 = 1.0 / l5
+        along_5_x = one_by_l5 * span_5_x
+        along_5_y = one_by_l5 * span_5_y
+        along_5_z = one_by_l5 * span_5_z
+        cos_base_lean_5 = along_5_x * home_along_5_x + along_5_y * home_along_5_y + along_5_z * home_along_5_z
         # leg 5: its joint on the base bends beyond its cone
         if not (cos_base_lean_5 >= least_cos_base):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_base_lean_5*cos_base_lean_5) + 0.0, cos_base_lean_5 + 0.0)
-                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_base_lean_5 * cos_base_lean_5) + 0.0, cos_base_lean_5 + 0.0)
+                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 5: its joint on the base bends beyond its cone [deg]", missing)
-        one_by_l6 = 1.0/l6
-        along_6_x = one_by_l6*span_6_x
-        along_6_y = one_by_l6*span_6_y
-        along_6_z = one_by_l6*span_6_z
-        cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
+        one_by_l6 = 1.0 / l6
+        along_6_x = one_by_l6 * span_6_x
+        along_6_y = one_by_l6 * span_6_y
+        along_6_z = one_by_l6 * span_6_z
+        cos_base_lean_6 = along_6_x * home_along_6_x + along_6_y * home_along_6_y + along_6_z * home_along_6_z
         # leg 6: its joint on the base bends beyond its cone
         if not (cos_base_lean_6 >= least_cos_base):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_base_lean_6*cos_base_lean_6) + 0.0, cos_base_lean_6 + 0.0)
-                    - arctan2(root(1.0 - least_cos_base*least_cos_base) + 0.0, least_cos_base + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_base_lean_6 * cos_base_lean_6) + 0.0, cos_base_lean_6 + 0.0)
+                - arctan2(root(1.0 - least_cos_base * least_cos_base) + 0.0, least_cos_base + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 6: its joint on the base bends beyond its cone [deg]", missing)
-        cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
-        cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
-        cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
-        cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
+        cone_axis_1_x = plate_axis_1_x * r11 + plate_axis_1_y * r12 + plate_axis_1_z * r13
+        cone_axis_1_y = plate_axis_1_x * r21 + plate_axis_1_y * r22 + plate_axis_1_z * r23
+        cone_axis_1_z = plate_axis_1_x * r31 + plate_axis_1_y * r32 + plate_axis_1_z * r33
+        cos_plate_lean_1 = along_1_x * cone_axis_1_x + along_1_y * cone_axis_1_y + along_1_z * cone_axis_1_z
         # leg 1: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_1 >= least_cos_plate):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_plate_lean_1*cos_plate_lean_1) + 0.0, cos_plate_lean_1 + 0.0)
-                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_plate_lean_1 * cos_plate_lean_1) + 0.0, cos_plate_lean_1 + 0.0)
+                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 1: its joint on the plate bends beyond its cone [deg]", missing)
-        cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
-        cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
-        cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
-        cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
+        cone_axis_2_x = plate_axis_2_x * r11 + plate_axis_2_y * r12 + plate_axis_2_z * r13
+        cone_axis_2_y = plate_axis_2_x * r21 + plate_axis_2_y * r22 + plate_axis_2_z * r23
+        cone_axis_2_z = plate_axis_2_x * r31 + plate_axis_2_y * r32 + plate_axis_2_z * r33
+        cos_plate_lean_2 = along_2_x * cone_axis_2_x + along_2_y * cone_axis_2_y + along_2_z * cone_axis_2_z
         # leg 2: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_2 >= least_cos_plate):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_plate_lean_2*cos_plate_lean_2) + 0.0, cos_plate_lean_2 + 0.0)
-                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_plate_lean_2 * cos_plate_lean_2) + 0.0, cos_plate_lean_2 + 0.0)
+                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 2: its joint on the plate bends beyond its cone [deg]", missing)
-        cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
-        cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
-        cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
-        cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
+        cone_axis_3_x = plate_axis_3_x * r11 + plate_axis_3_y * r12 + plate_axis_3_z * r13
+        cone_axis_3_y = plate_axis_3_x * r21 + plate_axis_3_y * r22 + plate_axis_3_z * r23
+        cone_axis_3_z = plate_axis_3_x * r31 + plate_axis_3_y * r32 + plate_axis_3_z * r33
+        cos_plate_lean_3 = along_3_x * cone_axis_3_x + along_3_y * cone_axis_3_y + along_3_z * cone_axis_3_z
         # leg 3: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_3 >= least_cos_plate):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_plate_lean_3*cos_plate_lean_3) + 0.0, cos_plate_lean_3 + 0.0)
-                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_plate_lean_3 * cos_plate_lean_3) + 0.0, cos_plate_lean_3 + 0.0)
+                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 3: its joint on the plate bends beyond its cone [deg]", missing)
-        cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
-        cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
-        cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
-        cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
+        cone_axis_4_x = plate_axis_4_x * r11 + plate_axis_4_y * r12 + plate_axis_4_z * r13
+        cone_axis_4_y = plate_axis_4_x * r21 + plate_axis_4_y * r22 + plate_axis_4_z * r23
+        cone_axis_4_z = plate_axis_4_x * r31 + plate_axis_4_y * r32 + plate_axis_4_z * r33
+        cos_plate_lean_4 = along_4_x * cone_axis_4_x + along_4_y * cone_axis_4_y + along_4_z * cone_axis_4_z
         # leg 4: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_4 >= least_cos_plate):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_plate_lean_4*cos_plate_lean_4) + 0.0, cos_plate_lean_4 + 0.0)
-                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_plate_lean_4 * cos_plate_lean_4) + 0.0, cos_plate_lean_4 + 0.0)
+                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 4: its joint on the plate bends beyond its cone [deg]", missing)
-        cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
-        cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
-        cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
-        cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
+        cone_axis_5_x = plate_axis_5_x * r11 + plate_axis_5_y * r12 + plate_axis_5_z * r13
+        cone_axis_5_y = plate_axis_5_x * r21 + plate_axis_5_y * r22 + plate_axis_5_z * r23
+        cone_axis_5_z = plate_axis_5_x * r31 + plate_axis_5_y * r32 + plate_axis_5_z * r33
+        cos_plate_lean_5 = along_5_x * cone_axis_5_x + along_5_y * cone_axis_5_y + along_5_z * cone_axis_5_z
         # leg 5: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_5 >= least_cos_plate):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_plate_lean_5*cos_plate_lean_5) + 0.0, cos_plate_lean_5 + 0.0)
-                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_plate_lean_5 * cos_plate_lean_5) + 0.0, cos_plate_lean_5 + 0.0)
+                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 5: its joint on the plate bends beyond its cone [deg]", missing)
-        cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
-        cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
-        cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
-        cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
+        cone_axis_6_x = plate_axis_6_x * r11 + plate_axis_6_y * r12 + plate_axis_6_z * r13
+        cone_axis_6_y = plate_axis_6_x * r21 + plate_axis_6_y * r22 + plate_axis_6_z * r23
+        cone_axis_6_z = plate_axis_6_x * r31 + plate_axis_6_y * r32 + plate_axis_6_z * r33
+        cos_plate_lean_6 = along_6_x * cone_axis_6_x + along_6_y * cone_axis_6_y + along_6_z * cone_axis_6_z
         # leg 6: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_6 >= least_cos_plate):
             missing = (
-                (
-                    arctan2(root(1.0 - cos_plate_lean_6*cos_plate_lean_6) + 0.0, cos_plate_lean_6 + 0.0)
-                    - arctan2(root(1.0 - least_cos_plate*least_cos_plate) + 0.0, least_cos_plate + 0.0)
-                )
-                /DEGREE
-            )
+                arctan2(root(1.0 - cos_plate_lean_6 * cos_plate_lean_6) + 0.0, cos_plate_lean_6 + 0.0)
+                - arctan2(root(1.0 - least_cos_plate * least_cos_plate) + 0.0, least_cos_plate + 0.0)
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "leg 6: its joint on the plate bends beyond its cone [deg]", missing)
-        moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*one_by_platform_radius
-        moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*one_by_platform_radius
-        moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*one_by_platform_radius
-        moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*one_by_platform_radius
-        moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*one_by_platform_radius
-        moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*one_by_platform_radius
-        moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*one_by_platform_radius
-        moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*one_by_platform_radius
-        moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*one_by_platform_radius
-        moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*one_by_platform_radius
-        moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*one_by_platform_radius
-        moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*one_by_platform_radius
-        moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*one_by_platform_radius
-        moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*one_by_platform_radius
-        moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*one_by_platform_radius
-        moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*one_by_platform_radius
-        moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*one_by_platform_radius
-        moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*one_by_platform_radius
+        moment_1_x = (along_1_z * arm_1_y - along_1_y * arm_1_z) * one_by_platform_radius
+        moment_1_y = (along_1_x * arm_1_z - along_1_z * arm_1_x) * one_by_platform_radius
+        moment_1_z = (along_1_y * arm_1_x - along_1_x * arm_1_y) * one_by_platform_radius
+        moment_2_x = (along_2_z * arm_2_y - along_2_y * arm_2_z) * one_by_platform_radius
+        moment_2_y = (along_2_x * arm_2_z - along_2_z * arm_2_x) * one_by_platform_radius
+        moment_2_z = (along_2_y * arm_2_x - along_2_x * arm_2_y) * one_by_platform_radius
+        moment_3_x = (along_3_z * arm_3_y - along_3_y * arm_3_z) * one_by_platform_radius
+        moment_3_y = (along_3_x * arm_3_z - along_3_z * arm_3_x) * one_by_platform_radius
+        moment_3_z = (along_3_y * arm_3_x - along_3_x * arm_3_y) * one_by_platform_radius
+        moment_4_x = (along_4_z * arm_4_y - along_4_y * arm_4_z) * one_by_platform_radius
+        moment_4_y = (along_4_x * arm_4_z - along_4_z * arm_4_x) * one_by_platform_radius
+        moment_4_z = (along_4_y * arm_4_x - along_4_x * arm_4_y) * one_by_platform_radius
+        moment_5_x = (along_5_z * arm_5_y - along_5_y * arm_5_z) * one_by_platform_radius
+        moment_5_y = (along_5_x * arm_5_z - along_5_z * arm_5_x) * one_by_platform_radius
+        moment_5_z = (along_5_y * arm_5_x - along_5_x * arm_5_y) * one_by_platform_radius
+        moment_6_x = (along_6_z * arm_6_y - along_6_y * arm_6_z) * one_by_platform_radius
+        moment_6_y = (along_6_x * arm_6_z - along_6_z * arm_6_x) * one_by_platform_radius
+        moment_6_z = (along_6_y * arm_6_x - along_6_x * arm_6_y) * one_by_platform_radius
         # determinant of the legs as lines: zero in a type 2 singularity
         (determinant,) = solve(
             (
@@ -1901,10 +1306,10 @@ class Hexapod(IterativeForward):
             (),
         )
         # rods_dependent: the other assembly mode, or too near to losing the plate
-        if not (assembly_sign*determinant >= min_type2_margin):
-            missing = min_type2_margin - assembly_sign*determinant
+        if not (assembly_sign * determinant >= min_type2_margin):
+            missing = min_type2_margin - assembly_sign * determinant
             return Diagnosis(
-                Status.UNREACHABLE, "rods_dependent: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "rods_dependent: the other assembly mode, or too near to losing the plate", missing
             )
         axis_l1 = l1 + offset_l1
         axis_l2 = l2 + offset_l2
@@ -1918,83 +1323,51 @@ class Hexapod(IterativeForward):
         """The test of the limits."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self._constants
-        highest_l1 = k.highest_l1
-        highest_l2 = k.highest_l2
-        highest_l3 = k.highest_l3
-        highest_l4 = k.highest_l4
-        highest_l5 = k.highest_l5
-        highest_l6 = k.highest_l6
-        lowest_l1 = k.lowest_l1
-        lowest_l2 = k.lowest_l2
-        lowest_l3 = k.lowest_l3
-        lowest_l4 = k.lowest_l4
-        lowest_l5 = k.lowest_l5
-        lowest_l6 = k.lowest_l6
-        # limits of L1
-        if not (axis_l1 >= lowest_l1):
-            missing = lowest_l1 - axis_l1
-            return Diagnosis(Status.UNREACHABLE, "L1: below its lower limit [u]", missing)
-        if not (axis_l1 <= highest_l1):
-            missing = axis_l1 - highest_l1
-            return Diagnosis(Status.UNREACHABLE, "L1: above its upper limit [u]", missing)
-        # limits of L2
-        if not (axis_l2 >= lowest_l2):
-            missing = lowest_l2 - axis_l2
-            return Diagnosis(Status.UNREACHABLE, "L2: below its lower limit [u]", missing)
-        if not (axis_l2 <= highest_l2):
-            missing = axis_l2 - highest_l2
-            return Diagnosis(Status.UNREACHABLE, "L2: above its upper limit [u]", missing)
-        # limits of L3
-        if not (axis_l3 >= lowest_l3):
-            missing = lowest_l3 - axis_l3
-            return Diagnosis(Status.UNREACHABLE, "L3: below its lower limit [u]", missing)
-        if not (axis_l3 <= highest_l3):
-            missing = axis_l3 - highest_l3
-            return Diagnosis(Status.UNREACHABLE, "L3: above its upper limit [u]", missing)
-        # limits of L4
-        if not (axis_l4 >= lowest_l4):
-            missing = lowest_l4 - axis_l4
-            return Diagnosis(Status.UNREACHABLE, "L4: below its lower limit [u]", missing)
-        if not (axis_l4 <= highest_l4):
-            missing = axis_l4 - highest_l4
-            return Diagnosis(Status.UNREACHABLE, "L4: above its upper limit [u]", missing)
-        # limits of L5
-        if not (axis_l5 >= lowest_l5):
-            missing = lowest_l5 - axis_l5
-            return Diagnosis(Status.UNREACHABLE, "L5: below its lower limit [u]", missing)
-        if not (axis_l5 <= highest_l5):
-            missing = axis_l5 - highest_l5
-            return Diagnosis(Status.UNREACHABLE, "L5: above its upper limit [u]", missing)
-        # limits of L6
-        if not (axis_l6 >= lowest_l6):
-            missing = lowest_l6 - axis_l6
-            return Diagnosis(Status.UNREACHABLE, "L6: below its lower limit [u]", missing)
-        if not (axis_l6 <= highest_l6):
-            missing = axis_l6 - highest_l6
-            return Diagnosis(Status.UNREACHABLE, "L6: above its upper limit [u]", missing)
+        highest_l1, highest_l2, highest_l3, highest_l4 = k.highest_l1, k.highest_l2, k.highest_l3, k.highest_l4
+        highest_l5, highest_l6, lowest_l1, lowest_l2 = k.highest_l5, k.highest_l6, k.lowest_l1, k.lowest_l2
+        lowest_l3, lowest_l4, lowest_l5, lowest_l6 = k.lowest_l3, k.lowest_l4, k.lowest_l5, k.lowest_l6
+        if not lowest_l1 <= axis_l1 <= highest_l1:
+            return beyond("L1", axis_l1, lowest_l1, highest_l1, "u")
+        if not lowest_l2 <= axis_l2 <= highest_l2:
+            return beyond("L2", axis_l2, lowest_l2, highest_l2, "u")
+        if not lowest_l3 <= axis_l3 <= highest_l3:
+            return beyond("L3", axis_l3, lowest_l3, highest_l3, "u")
+        if not lowest_l4 <= axis_l4 <= highest_l4:
+            return beyond("L4", axis_l4, lowest_l4, highest_l4, "u")
+        if not lowest_l5 <= axis_l5 <= highest_l5:
+            return beyond("L5", axis_l5, lowest_l5, highest_l5, "u")
+        if not lowest_l6 <= axis_l6 <= highest_l6:
+            return beyond("L6", axis_l6, lowest_l6, highest_l6, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self._constants
-        home_r11 = k.home_r11
-        home_r12 = k.home_r12
-        home_r13 = k.home_r13
-        home_r21 = k.home_r21
-        home_r22 = k.home_r22
-        home_r23 = k.home_r23
-        home_r31 = k.home_r31
-        home_r32 = k.home_r32
-        home_r33 = k.home_r33
-        home_x = k.home_x
-        home_y = k.home_y
-        home_z = k.home_z
+        home_r11, home_r12, home_r13, home_r21, home_r22 = k.home_r11, k.home_r12, k.home_r13, k.home_r21, k.home_r22
+        home_r23, home_r31, home_r32, home_r33, home_x = k.home_r23, k.home_r31, k.home_r32, k.home_r33, k.home_x
+        home_y, home_z = k.home_y, k.home_z
         # pose of the platform, by Newton's method from the home pose
         found = self._find_platform(
             (
-                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
-                home_r22, home_r23, home_r31, home_r32, home_r33, home_x, home_y, home_z,
+                axis_l1,
+                axis_l2,
+                axis_l3,
+                axis_l4,
+                axis_l5,
+                axis_l6,
+                home_r11,
+                home_r12,
+                home_r13,
+                home_r21,
+                home_r22,
+                home_r23,
+                home_r31,
+                home_r32,
+                home_r33,
+                home_x,
+                home_y,
+                home_z,
             )
         )
         if isinstance(found, Status):
@@ -2006,45 +1379,126 @@ class Hexapod(IterativeForward):
         """The Jacobian by rows, per radian."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self._constants
-        home_r11 = k.home_r11
-        home_r12 = k.home_r12
-        home_r13 = k.home_r13
-        home_r21 = k.home_r21
-        home_r22 = k.home_r22
-        home_r23 = k.home_r23
-        home_r31 = k.home_r31
-        home_r32 = k.home_r32
-        home_r33 = k.home_r33
-        home_x = k.home_x
-        home_y = k.home_y
-        home_z = k.home_z
-        one_by_platform_radius = k.one_by_platform_radius
+        home_r11, home_r12, home_r13, home_r21, home_r22 = k.home_r11, k.home_r12, k.home_r13, k.home_r21, k.home_r22
+        home_r23, home_r31, home_r32, home_r33, home_x = k.home_r23, k.home_r31, k.home_r32, k.home_r33, k.home_x
+        home_y, home_z, one_by_platform_radius = k.home_y, k.home_z, k.one_by_platform_radius
         # pose of the platform, by Newton's method from the home pose
         found = self._find_platform(
             (
-                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
-                home_r22, home_r23, home_r31, home_r32, home_r33, home_x, home_y, home_z,
+                axis_l1,
+                axis_l2,
+                axis_l3,
+                axis_l4,
+                axis_l5,
+                axis_l6,
+                home_r11,
+                home_r12,
+                home_r13,
+                home_r21,
+                home_r22,
+                home_r23,
+                home_r31,
+                home_r32,
+                home_r33,
+                home_x,
+                home_y,
+                home_z,
             )
         )
         if isinstance(found, Status):
             return found
         (
-            _, _, _, _, _, _, _, _, _, _, _, _, determinant, along_1_x, along_1_y, along_1_z, moment_1_x,
-            moment_1_y, moment_1_z, along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z,
-            along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z, along_4_x, along_4_y, along_4_z,
-            moment_4_x, moment_4_y, moment_4_z, along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y,
-            moment_5_z, along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            _,
+            determinant,
+            along_1_x,
+            along_1_y,
+            along_1_z,
+            moment_1_x,
+            moment_1_y,
+            moment_1_z,
+            along_2_x,
+            along_2_y,
+            along_2_z,
+            moment_2_x,
+            moment_2_y,
+            moment_2_z,
+            along_3_x,
+            along_3_y,
+            along_3_z,
+            moment_3_x,
+            moment_3_y,
+            moment_3_z,
+            along_4_x,
+            along_4_y,
+            along_4_z,
+            moment_4_x,
+            moment_4_y,
+            moment_4_z,
+            along_5_x,
+            along_5_y,
+            along_5_z,
+            moment_5_x,
+            moment_5_y,
+            moment_5_z,
+            along_6_x,
+            along_6_y,
+            along_6_z,
+            moment_6_x,
+            moment_6_y,
+            moment_6_z,
         ) = found
         # nothing controls the plate
         if not (abs(determinant) > 1e-11):
             return Status.IMPOSSIBLE
         # twist of the platform per velocity of each leg
         (
-            _, column_1_vx, column_2_vx, column_3_vx, column_4_vx, column_5_vx, column_6_vx, column_1_vy,
-            column_2_vy, column_3_vy, column_4_vy, column_5_vy, column_6_vy, column_1_vz, column_2_vz,
-            column_3_vz, column_4_vz, column_5_vz, column_6_vz, column_1_wx, column_2_wx, column_3_wx,
-            column_4_wx, column_5_wx, column_6_wx, column_1_wy, column_2_wy, column_3_wy, column_4_wy,
-            column_5_wy, column_6_wy, column_1_wz, column_2_wz, column_3_wz, column_4_wz, column_5_wz,
+            _,
+            column_1_vx,
+            column_2_vx,
+            column_3_vx,
+            column_4_vx,
+            column_5_vx,
+            column_6_vx,
+            column_1_vy,
+            column_2_vy,
+            column_3_vy,
+            column_4_vy,
+            column_5_vy,
+            column_6_vy,
+            column_1_vz,
+            column_2_vz,
+            column_3_vz,
+            column_4_vz,
+            column_5_vz,
+            column_6_vz,
+            column_1_wx,
+            column_2_wx,
+            column_3_wx,
+            column_4_wx,
+            column_5_wx,
+            column_6_wx,
+            column_1_wy,
+            column_2_wy,
+            column_3_wy,
+            column_4_wy,
+            column_5_wy,
+            column_6_wy,
+            column_1_wz,
+            column_2_wz,
+            column_3_wz,
+            column_4_wz,
+            column_5_wz,
             column_6_wz,
         ) = solve(
             (
@@ -2069,19 +1523,28 @@ class Hexapod(IterativeForward):
             (column_1_vy, column_2_vy, column_3_vy, column_4_vy, column_5_vy, column_6_vy),
             (column_1_vz, column_2_vz, column_3_vz, column_4_vz, column_5_vz, column_6_vz),
             (
-                column_1_wx*one_by_platform_radius, column_2_wx*one_by_platform_radius,
-                column_3_wx*one_by_platform_radius, column_4_wx*one_by_platform_radius,
-                column_5_wx*one_by_platform_radius, column_6_wx*one_by_platform_radius,
+                column_1_wx * one_by_platform_radius,
+                column_2_wx * one_by_platform_radius,
+                column_3_wx * one_by_platform_radius,
+                column_4_wx * one_by_platform_radius,
+                column_5_wx * one_by_platform_radius,
+                column_6_wx * one_by_platform_radius,
             ),
             (
-                column_1_wy*one_by_platform_radius, column_2_wy*one_by_platform_radius,
-                column_3_wy*one_by_platform_radius, column_4_wy*one_by_platform_radius,
-                column_5_wy*one_by_platform_radius, column_6_wy*one_by_platform_radius,
+                column_1_wy * one_by_platform_radius,
+                column_2_wy * one_by_platform_radius,
+                column_3_wy * one_by_platform_radius,
+                column_4_wy * one_by_platform_radius,
+                column_5_wy * one_by_platform_radius,
+                column_6_wy * one_by_platform_radius,
             ),
             (
-                column_1_wz*one_by_platform_radius, column_2_wz*one_by_platform_radius,
-                column_3_wz*one_by_platform_radius, column_4_wz*one_by_platform_radius,
-                column_5_wz*one_by_platform_radius, column_6_wz*one_by_platform_radius,
+                column_1_wz * one_by_platform_radius,
+                column_2_wz * one_by_platform_radius,
+                column_3_wz * one_by_platform_radius,
+                column_4_wz * one_by_platform_radius,
+                column_5_wz * one_by_platform_radius,
+                column_6_wz * one_by_platform_radius,
             ),
         )
 
@@ -2090,18 +1553,271 @@ class Hexapod(IterativeForward):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        """The one branch: see `Mechanism.branches`."""
+        return (self.branch(frame, (), reference),)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        solve = self._one_trusted
-        return solve(frame, signs, reference)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
+        k = self._constants
+        assembly_sign, base_1_x, base_1_y, base_1_z = k.assembly_sign, k.base_1_x, k.base_1_y, k.base_1_z
+        base_2_x, base_2_y, base_2_z, base_3_x, base_3_y = k.base_2_x, k.base_2_y, k.base_2_z, k.base_3_x, k.base_3_y
+        base_3_z, base_4_x, base_4_y, base_4_z, base_5_x = k.base_3_z, k.base_4_x, k.base_4_y, k.base_4_z, k.base_5_x
+        base_5_y, base_5_z, base_6_x, base_6_y, base_6_z = k.base_5_y, k.base_5_z, k.base_6_x, k.base_6_y, k.base_6_z
+        home_along_1_x, home_along_1_y, home_along_1_z = k.home_along_1_x, k.home_along_1_y, k.home_along_1_z
+        home_along_2_x, home_along_2_y, home_along_2_z = k.home_along_2_x, k.home_along_2_y, k.home_along_2_z
+        home_along_3_x, home_along_3_y, home_along_3_z = k.home_along_3_x, k.home_along_3_y, k.home_along_3_z
+        home_along_4_x, home_along_4_y, home_along_4_z = k.home_along_4_x, k.home_along_4_y, k.home_along_4_z
+        home_along_5_x, home_along_5_y, home_along_5_z = k.home_along_5_x, k.home_along_5_y, k.home_along_5_z
+        home_along_6_x, home_along_6_y, home_along_6_z = k.home_along_6_x, k.home_along_6_y, k.home_along_6_z
+        least_cos_base, least_cos_plate = k.least_cos_base, k.least_cos_plate
+        machine_scale_times_shortest_link, min_type2_margin = k.machine_scale_times_shortest_link, k.min_type2_margin
+        offset_l1, offset_l2, offset_l3, offset_l4 = k.offset_l1, k.offset_l2, k.offset_l3, k.offset_l4
+        offset_l5, offset_l6, one_by_platform_radius = k.offset_l5, k.offset_l6, k.one_by_platform_radius
+        plate_axis_1_x, plate_axis_1_y, plate_axis_1_z = k.plate_axis_1_x, k.plate_axis_1_y, k.plate_axis_1_z
+        plate_axis_2_x, plate_axis_2_y, plate_axis_2_z = k.plate_axis_2_x, k.plate_axis_2_y, k.plate_axis_2_z
+        plate_axis_3_x, plate_axis_3_y, plate_axis_3_z = k.plate_axis_3_x, k.plate_axis_3_y, k.plate_axis_3_z
+        plate_axis_4_x, plate_axis_4_y, plate_axis_4_z = k.plate_axis_4_x, k.plate_axis_4_y, k.plate_axis_4_z
+        plate_axis_5_x, plate_axis_5_y, plate_axis_5_z = k.plate_axis_5_x, k.plate_axis_5_y, k.plate_axis_5_z
+        plate_axis_6_x, plate_axis_6_y, plate_axis_6_z = k.plate_axis_6_x, k.plate_axis_6_y, k.plate_axis_6_z
+        platform_1_x, platform_1_y, platform_1_z = k.platform_1_x, k.platform_1_y, k.platform_1_z
+        platform_2_x, platform_2_y, platform_2_z = k.platform_2_x, k.platform_2_y, k.platform_2_z
+        platform_3_x, platform_3_y, platform_3_z = k.platform_3_x, k.platform_3_y, k.platform_3_z
+        platform_4_x, platform_4_y, platform_4_z = k.platform_4_x, k.platform_4_y, k.platform_4_z
+        platform_5_x, platform_5_y, platform_5_z = k.platform_5_x, k.platform_5_y, k.platform_5_z
+        platform_6_x, platform_6_y, platform_6_z = k.platform_6_x, k.platform_6_y, k.platform_6_z
+        arm_1_x = platform_1_x * r11 + platform_1_y * r12 + platform_1_z * r13
+        span_1_x = arm_1_x + x - base_1_x  # rod 1: known part of its vector
+        arm_1_y = platform_1_x * r21 + platform_1_y * r22 + platform_1_z * r23
+        span_1_y = arm_1_y + y - base_1_y
+        arm_1_z = platform_1_x * r31 + platform_1_y * r32 + platform_1_z * r33
+        span_1_z = arm_1_z + z - base_1_z
+        # quadratic equation for l1: rod 1
+        radicand_l1 = span_1_x * span_1_x + span_1_y * span_1_y + span_1_z * span_1_z
+        l1 = sqrt(radicand_l1) if radicand_l1 > 0.0 else 0.0
+        # leg 1: without length it has no direction
+        if not (l1 > machine_scale_times_shortest_link):
+            return None
+        arm_2_x = platform_2_x * r11 + platform_2_y * r12 + platform_2_z * r13
+        span_2_x = arm_2_x + x - base_2_x  # rod 2: known part of its vector
+        arm_2_y = platform_2_x * r21 + platform_2_y * r22 + platform_2_z * r23
+        span_2_y = arm_2_y + y - base_2_y
+        arm_2_z = platform_2_x * r31 + platform_2_y * r32 + platform_2_z * r33
+        span_2_z = arm_2_z + z - base_2_z
+        # quadratic equation for l2: rod 2
+        radicand_l2 = span_2_x * span_2_x + span_2_y * span_2_y + span_2_z * span_2_z
+        l2 = sqrt(radicand_l2) if radicand_l2 > 0.0 else 0.0
+        # leg 2: without length it has no direction
+        if not (l2 > machine_scale_times_shortest_link):
+            return None
+        arm_3_x = platform_3_x * r11 + platform_3_y * r12 + platform_3_z * r13
+        span_3_x = arm_3_x + x - base_3_x  # rod 3: known part of its vector
+        arm_3_y = platform_3_x * r21 + platform_3_y * r22 + platform_3_z * r23
+        span_3_y = arm_3_y + y - base_3_y
+        arm_3_z = platform_3_x * r31 + platform_3_y * r32 + platform_3_z * r33
+        span_3_z = arm_3_z + z - base_3_z
+        # quadratic equation for l3: rod 3
+        radicand_l3 = span_3_x * span_3_x + span_3_y * span_3_y + span_3_z * span_3_z
+        l3 = sqrt(radicand_l3) if radicand_l3 > 0.0 else 0.0
+        # leg 3: without length it has no direction
+        if not (l3 > machine_scale_times_shortest_link):
+            return None
+        arm_4_x = platform_4_x * r11 + platform_4_y * r12 + platform_4_z * r13
+        span_4_x = arm_4_x + x - base_4_x  # rod 4: known part of its vector
+        arm_4_y = platform_4_x * r21 + platform_4_y * r22 + platform_4_z * r23
+        span_4_y = arm_4_y + y - base_4_y
+        arm_4_z = platform_4_x * r31 + platform_4_y * r32 + platform_4_z * r33
+        span_4_z = arm_4_z + z - base_4_z
+        # quadratic equation for l4: rod 4
+        radicand_l4 = span_4_x * span_4_x + span_4_y * span_4_y + span_4_z * span_4_z
+        l4 = sqrt(radicand_l4) if radicand_l4 > 0.0 else 0.0
+        # leg 4: without length it has no direction
+        if not (l4 > machine_scale_times_shortest_link):
+            return None
+        arm_5_x = platform_5_x * r11 + platform_5_y * r12 + platform_5_z * r13
+        span_5_x = arm_5_x + x - base_5_x  # rod 5: known part of its vector
+        arm_5_y = platform_5_x * r21 + platform_5_y * r22 + platform_5_z * r23
+        span_5_y = arm_5_y + y - base_5_y
+        arm_5_z = platform_5_x * r31 + platform_5_y * r32 + platform_5_z * r33
+        span_5_z = arm_5_z + z - base_5_z
+        # quadratic equation for l5: rod 5
+        radicand_l5 = span_5_x * span_5_x + span_5_y * span_5_y + span_5_z * span_5_z
+        l5 = sqrt(radicand_l5) if radicand_l5 > 0.0 else 0.0
+        # leg 5: without length it has no direction
+        if not (l5 > machine_scale_times_shortest_link):
+            return None
+        arm_6_x = platform_6_x * r11 + platform_6_y * r12 + platform_6_z * r13
+        span_6_x = arm_6_x + x - base_6_x  # rod 6: known part of its vector
+        arm_6_y = platform_6_x * r21 + platform_6_y * r22 + platform_6_z * r23
+        span_6_y = arm_6_y + y - base_6_y
+        arm_6_z = platform_6_x * r31 + platform_6_y * r32 + platform_6_z * r33
+        span_6_z = arm_6_z + z - base_6_z
+        # quadratic equation for l6: rod 6
+        radicand_l6 = span_6_x * span_6_x + span_6_y * span_6_y + span_6_z * span_6_z
+        l6 = sqrt(radicand_l6) if radicand_l6 > 0.0 else 0.0
+        # leg 6: without length it has no direction
+        if not (l6 > machine_scale_times_shortest_link):
+            return None
+        # leg 1 as a line: unit vector, and its moment about the platform's origin
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
+        one_by_l1 = 1.0 / divisor_1
+        along_1_x = one_by_l1 * span_1_x
+        along_1_y = one_by_l1 * span_1_y
+        along_1_z = one_by_l1 * span_1_z
+        cos_base_lean_1 = along_1_x * home_along_1_x + along_1_y * home_along_1_y + along_1_z * home_along_1_z
+        # leg 1: its joint on the base bends beyond its cone
+        if not (cos_base_lean_1 >= least_cos_base):
+            return None
+        # leg 2 as a line: unit vector, and its moment about the platform's origin
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
+        one_by_l2 = 1.0 / divisor_2
+        along_2_x = one_by_l2 * span_2_x
+        along_2_y = one_by_l2 * span_2_y
+        along_2_z = one_by_l2 * span_2_z
+        cos_base_lean_2 = along_2_x * home_along_2_x + along_2_y * home_along_2_y + along_2_z * home_along_2_z
+        # leg 2: its joint on the base bends beyond its cone
+        if not (cos_base_lean_2 >= least_cos_base):
+            return None
+        # leg 3 as a line: unit vector, and its moment about the platform's origin
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
+        one_by_l3 = 1.0 / divisor_3
+        along_3_x = one_by_l3 * span_3_x
+        along_3_y = one_by_l3 * span_3_y
+        along_3_z = one_by_l3 * span_3_z
+        cos_base_lean_3 = along_3_x * home_along_3_x + along_3_y * home_along_3_y + along_3_z * home_along_3_z
+        # leg 3: its joint on the base bends beyond its cone
+        if not (cos_base_lean_3 >= least_cos_base):
+            return None
+        # leg 4 as a line: unit vector, and its moment about the platform's origin
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
+        one_by_l4 = 1.0 / divisor_4
+        along_4_x = one_by_l4 * span_4_x
+        along_4_y = one_by_l4 * span_4_y
+        along_4_z = one_by_l4 * span_4_z
+        cos_base_lean_4 = along_4_x * home_along_4_x + along_4_y * home_along_4_y + along_4_z * home_along_4_z
+        # leg 4: its joint on the base bends beyond its cone
+        if not (cos_base_lean_4 >= least_cos_base):
+            return None
+        # leg 5 as a line: unit vector, and its moment about the platform's origin
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
+        one_by_l5 = 1.0 / divisor_5
+        along_5_x = one_by_l5 * span_5_x
+        along_5_y = one_by_l5 * span_5_y
+        along_5_z = one_by_l5 * span_5_z
+        cos_base_lean_5 = along_5_x * home_along_5_x + along_5_y * home_along_5_y + along_5_z * home_along_5_z
+        # leg 5: its joint on the base bends beyond its cone
+        if not (cos_base_lean_5 >= least_cos_base):
+            return None
+        # leg 6 as a line: unit vector, and its moment about the platform's origin
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
+        one_by_l6 = 1.0 / divisor_6
+        along_6_x = one_by_l6 * span_6_x
+        along_6_y = one_by_l6 * span_6_y
+        along_6_z = one_by_l6 * span_6_z
+        cos_base_lean_6 = along_6_x * home_along_6_x + along_6_y * home_along_6_y + along_6_z * home_along_6_z
+        # leg 6: its joint on the base bends beyond its cone
+        if not (cos_base_lean_6 >= least_cos_base):
+            return None
+        cone_axis_1_x = plate_axis_1_x * r11 + plate_axis_1_y * r12 + plate_axis_1_z * r13
+        cone_axis_1_y = plate_axis_1_x * r21 + plate_axis_1_y * r22 + plate_axis_1_z * r23
+        cone_axis_1_z = plate_axis_1_x * r31 + plate_axis_1_y * r32 + plate_axis_1_z * r33
+        cos_plate_lean_1 = along_1_x * cone_axis_1_x + along_1_y * cone_axis_1_y + along_1_z * cone_axis_1_z
+        # leg 1: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_1 >= least_cos_plate):
+            return None
+        cone_axis_2_x = plate_axis_2_x * r11 + plate_axis_2_y * r12 + plate_axis_2_z * r13
+        cone_axis_2_y = plate_axis_2_x * r21 + plate_axis_2_y * r22 + plate_axis_2_z * r23
+        cone_axis_2_z = plate_axis_2_x * r31 + plate_axis_2_y * r32 + plate_axis_2_z * r33
+        cos_plate_lean_2 = along_2_x * cone_axis_2_x + along_2_y * cone_axis_2_y + along_2_z * cone_axis_2_z
+        # leg 2: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_2 >= least_cos_plate):
+            return None
+        cone_axis_3_x = plate_axis_3_x * r11 + plate_axis_3_y * r12 + plate_axis_3_z * r13
+        cone_axis_3_y = plate_axis_3_x * r21 + plate_axis_3_y * r22 + plate_axis_3_z * r23
+        cone_axis_3_z = plate_axis_3_x * r31 + plate_axis_3_y * r32 + plate_axis_3_z * r33
+        cos_plate_lean_3 = along_3_x * cone_axis_3_x + along_3_y * cone_axis_3_y + along_3_z * cone_axis_3_z
+        # leg 3: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_3 >= least_cos_plate):
+            return None
+        cone_axis_4_x = plate_axis_4_x * r11 + plate_axis_4_y * r12 + plate_axis_4_z * r13
+        cone_axis_4_y = plate_axis_4_x * r21 + plate_axis_4_y * r22 + plate_axis_4_z * r23
+        cone_axis_4_z = plate_axis_4_x * r31 + plate_axis_4_y * r32 + plate_axis_4_z * r33
+        cos_plate_lean_4 = along_4_x * cone_axis_4_x + along_4_y * cone_axis_4_y + along_4_z * cone_axis_4_z
+        # leg 4: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_4 >= least_cos_plate):
+            return None
+        cone_axis_5_x = plate_axis_5_x * r11 + plate_axis_5_y * r12 + plate_axis_5_z * r13
+        cone_axis_5_y = plate_axis_5_x * r21 + plate_axis_5_y * r22 + plate_axis_5_z * r23
+        cone_axis_5_z = plate_axis_5_x * r31 + plate_axis_5_y * r32 + plate_axis_5_z * r33
+        cos_plate_lean_5 = along_5_x * cone_axis_5_x + along_5_y * cone_axis_5_y + along_5_z * cone_axis_5_z
+        # leg 5: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_5 >= least_cos_plate):
+            return None
+        cone_axis_6_x = plate_axis_6_x * r11 + plate_axis_6_y * r12 + plate_axis_6_z * r13
+        cone_axis_6_y = plate_axis_6_x * r21 + plate_axis_6_y * r22 + plate_axis_6_z * r23
+        cone_axis_6_z = plate_axis_6_x * r31 + plate_axis_6_y * r32 + plate_axis_6_z * r33
+        cos_plate_lean_6 = along_6_x * cone_axis_6_x + along_6_y * cone_axis_6_y + along_6_z * cone_axis_6_z
+        # leg 6: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_6 >= least_cos_plate):
+            return None
+        # determinant of the legs as lines: zero in a type 2 singularity
+        (determinant,) = solve(
+            (
+                (
+                    along_1_x,
+                    along_1_y,
+                    along_1_z,
+                    (along_1_z * arm_1_y - along_1_y * arm_1_z) * one_by_platform_radius,
+                    (along_1_x * arm_1_z - along_1_z * arm_1_x) * one_by_platform_radius,
+                    (along_1_y * arm_1_x - along_1_x * arm_1_y) * one_by_platform_radius,
+                ),
+                (
+                    along_2_x,
+                    along_2_y,
+                    along_2_z,
+                    (along_2_z * arm_2_y - along_2_y * arm_2_z) * one_by_platform_radius,
+                    (along_2_x * arm_2_z - along_2_z * arm_2_x) * one_by_platform_radius,
+                    (along_2_y * arm_2_x - along_2_x * arm_2_y) * one_by_platform_radius,
+                ),
+                (
+                    along_3_x,
+                    along_3_y,
+                    along_3_z,
+                    (along_3_z * arm_3_y - along_3_y * arm_3_z) * one_by_platform_radius,
+                    (along_3_x * arm_3_z - along_3_z * arm_3_x) * one_by_platform_radius,
+                    (along_3_y * arm_3_x - along_3_x * arm_3_y) * one_by_platform_radius,
+                ),
+                (
+                    along_4_x,
+                    along_4_y,
+                    along_4_z,
+                    (along_4_z * arm_4_y - along_4_y * arm_4_z) * one_by_platform_radius,
+                    (along_4_x * arm_4_z - along_4_z * arm_4_x) * one_by_platform_radius,
+                    (along_4_y * arm_4_x - along_4_x * arm_4_y) * one_by_platform_radius,
+                ),
+                (
+                    along_5_x,
+                    along_5_y,
+                    along_5_z,
+                    (along_5_z * arm_5_y - along_5_y * arm_5_z) * one_by_platform_radius,
+                    (along_5_x * arm_5_z - along_5_z * arm_5_x) * one_by_platform_radius,
+                    (along_5_y * arm_5_x - along_5_x * arm_5_y) * one_by_platform_radius,
+                ),
+                (
+                    along_6_x,
+                    along_6_y,
+                    along_6_z,
+                    (along_6_z * arm_6_y - along_6_y * arm_6_z) * one_by_platform_radius,
+                    (along_6_x * arm_6_z - along_6_z * arm_6_x) * one_by_platform_radius,
+                    (along_6_y * arm_6_x - along_6_x * arm_6_y) * one_by_platform_radius,
+                ),
+            ),
+            (),
+        )
+        # rods_dependent: the other assembly mode, or too near to losing the plate
+        if not (assembly_sign * determinant >= min_type2_margin):
+            return None
+        return (l1 + offset_l1, l2 + offset_l2, l3 + offset_l3, l4 + offset_l4, l5 + offset_l5, l6 + offset_l6)
 
     def _array_programs(self) -> StartedPrograms:
         """The programs on arrays."""

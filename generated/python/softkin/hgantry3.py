@@ -27,62 +27,32 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._types import (
-    Axis,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
-from softkin._unrolled.hgantry3 import unrolled
+from softkin._scalar import are_usable
+from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    offset_a: float
-    offset_b: float
-    offset_z: float
-    check_limits: bool
-    lower_a: float
-    upper_a: float
-    unlimited_a: bool
-    lowest_a: float
-    highest_a: float
-    lower_b: float
-    upper_b: float
-    unlimited_b: bool
-    lowest_b: float
-    highest_b: float
-    lower_z: float
-    upper_z: float
-    unlimited_z: bool
-    lowest_z: float
-    highest_z: float
-    lower_x: float
-    upper_x: float
-    unlimited_x: bool
-    lowest_x: float
-    highest_x: float
-    lower_y: float
-    upper_y: float
-    unlimited_y: bool
-    lowest_y: float
-    highest_y: float
-    machine_scale: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        offset_a, offset_b, offset_z = p["offset_a"], p["offset_b"], p["offset_z"]
+        self.lowest_a, self.highest_a, *_ = machine._window("a")
+        self.lowest_b, self.highest_b, *_ = machine._window("b")
+        self.lowest_z, self.highest_z, *_ = machine._window("z")
+        self.lowest_x, self.highest_x, *_ = machine._window("x")
+        self.lowest_y, self.highest_y, *_ = machine._window("y")
+        self.offset_a, self.offset_b, self.offset_z = offset_a, offset_b, offset_z
 
 
 class HGantry3(OffsetKinematics):
@@ -91,7 +61,7 @@ class HGantry3(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_constants",)
 
     NAME = "Kin_HGantry3"
     AXES = (
@@ -100,66 +70,20 @@ class HGantry3(OffsetKinematics):
         Axis(name="Z", kind="linear", unit="u", meaning="Carriage along Z", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="offset_a", kind="distance", unit="u", meaning="A: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_b", kind="distance", unit="u", meaning="B: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_z", kind="distance", unit="u", meaning="Z: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a", kind="distance", unit="u", meaning="A: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a", kind="distance", unit="u", meaning="A: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_b", kind="distance", unit="u", meaning="B: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_b", kind="distance", unit="u", meaning="B: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_z", kind="distance", unit="u", meaning="Z: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_z", kind="distance", unit="u", meaning="Z: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_x", kind="distance", unit="u",
-            meaning="lower limit of X of the carriage, both 0: no limit", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_x", kind="distance", unit="u",
-            meaning="upper limit of X of the carriage, both 0: no limit", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_y", kind="distance", unit="u",
-            meaning="lower limit of Y of the carriage, both 0: no limit", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_y", kind="distance", unit="u",
-            meaning="upper limit of Y of the carriage, both 0: no limit", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("distance", "offset_a", "A: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_b", "B: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_z", "Z: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_a", "A: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a", "A: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_b", "B: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_b", "B: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_z", "Z: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_z", "Z: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_x", "lower limit of X of the carriage, both 0: no limit"),
+        Parameter.of("distance", "upper_x", "upper limit of X of the carriage, both 0: no limit"),
+        Parameter.of("distance", "lower_y", "lower limit of Y of the carriage, both 0: no limit"),
+        Parameter.of("distance", "upper_y", "upper limit of Y of the carriage, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = ()
     DEFAULT_CONFIGURATION = ()
@@ -173,10 +97,22 @@ class HGantry3(OffsetKinematics):
     DISTANCE_AXES = (0, 1, 2)
 
     def __init__(
-        self, *, offset_a: float = 0.0, offset_b: float = 0.0, offset_z: float = 0.0, lower_a: float = 0.0,
-        upper_a: float = 0.0, lower_b: float = 0.0, upper_b: float = 0.0, lower_z: float = 0.0,
-        upper_z: float = 0.0, lower_x: float = 0.0, upper_x: float = 0.0, lower_y: float = 0.0,
-        upper_y: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        offset_a: float = 0.0,
+        offset_b: float = 0.0,
+        offset_z: float = 0.0,
+        lower_a: float = 0.0,
+        upper_a: float = 0.0,
+        lower_b: float = 0.0,
+        upper_b: float = 0.0,
+        lower_z: float = 0.0,
+        upper_z: float = 0.0,
+        lower_x: float = 0.0,
+        upper_x: float = 0.0,
+        lower_y: float = 0.0,
+        upper_y: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -195,139 +131,38 @@ class HGantry3(OffsetKinematics):
         upper_y: upper limit of Y of the carriage, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            offset_a, offset_b, offset_z, lower_a, upper_a, lower_b, upper_b, lower_z, upper_z, lower_x, upper_x,
-            lower_y, upper_y, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a=-1e12, lowest_b=-1e12, lowest_z=-1e12, lowest_x=-1e12, lowest_y=-1e12, highest_a=1e12,
-                highest_b=1e12, highest_z=1e12, highest_x=1e12, highest_y=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, offset_a: float, offset_b: float, offset_z: float, lower_a: float, upper_a: float, lower_b: float,
-        upper_b: float, lower_z: float, upper_z: float, lower_x: float, upper_x: float, lower_y: float,
-        upper_y: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (offset_a >= -1e9 and offset_a <= 1e9):
-            raise self._refusal("offset_a: A: axis value at the kinematic zero position", offset_a=offset_a)
-        if not (offset_b >= -1e9 and offset_b <= 1e9):
-            raise self._refusal("offset_b: B: axis value at the kinematic zero position", offset_b=offset_b)
-        if not (offset_z >= -1e9 and offset_z <= 1e9):
-            raise self._refusal("offset_z: Z: axis value at the kinematic zero position", offset_z=offset_z)
-        if not (lower_a >= -1e9 and lower_a <= 1e9):
-            raise self._refusal("lower_a: A: lower limit of the axis, both 0: no limit", lower_a=lower_a)
-        if not (upper_a >= -1e9 and upper_a <= 1e9):
-            raise self._refusal("upper_a: A: upper limit of the axis, both 0: no limit", upper_a=upper_a)
-        if not (lower_b >= -1e9 and lower_b <= 1e9):
-            raise self._refusal("lower_b: B: lower limit of the axis, both 0: no limit", lower_b=lower_b)
-        if not (upper_b >= -1e9 and upper_b <= 1e9):
-            raise self._refusal("upper_b: B: upper limit of the axis, both 0: no limit", upper_b=upper_b)
-        if not (lower_z >= -1e9 and lower_z <= 1e9):
-            raise self._refusal("lower_z: Z: lower limit of the axis, both 0: no limit", lower_z=lower_z)
-        if not (upper_z >= -1e9 and upper_z <= 1e9):
-            raise self._refusal("upper_z: Z: upper limit of the axis, both 0: no limit", upper_z=upper_z)
-        if not (lower_x >= -1e9 and lower_x <= 1e9):
-            raise self._refusal("lower_x: lower limit of X of the carriage, both 0: no limit", lower_x=lower_x)
-        if not (upper_x >= -1e9 and upper_x <= 1e9):
-            raise self._refusal("upper_x: upper limit of X of the carriage, both 0: no limit", upper_x=upper_x)
-        if not (lower_y >= -1e9 and lower_y <= 1e9):
-            raise self._refusal("lower_y: lower limit of Y of the carriage, both 0: no limit", lower_y=lower_y)
-        if not (upper_y >= -1e9 and upper_y <= 1e9):
-            raise self._refusal("upper_y: upper limit of Y of the carriage, both 0: no limit", upper_y=upper_y)
-        if not ((lower_a < upper_a) or (abs(lower_a) + abs(upper_a) <= 0.0)):
-            raise self._refusal("lower_a below upper_a, or both 0", lower_a=lower_a, upper_a=upper_a)
-        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: whether it has no limits
-        effective_lower_a = lower_a
-        effective_upper_a = upper_a
-        tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
-        lowest_a = -1e12 if unlimited_a else effective_lower_a - tolerance_a
-        highest_a = 1e12 if unlimited_a else effective_upper_a + tolerance_a
-        if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
-            raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
-        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: whether it has no limits
-        effective_lower_b = lower_b
-        effective_upper_b = upper_b
-        tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
-        lowest_b = -1e12 if unlimited_b else effective_lower_b - tolerance_b
-        highest_b = 1e12 if unlimited_b else effective_upper_b + tolerance_b
-        if not ((lower_z < upper_z) or (abs(lower_z) + abs(upper_z) <= 0.0)):
-            raise self._refusal("lower_z below upper_z, or both 0", lower_z=lower_z, upper_z=upper_z)
-        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: whether it has no limits
-        effective_lower_z = lower_z
-        effective_upper_z = upper_z
-        tolerance_z = 1e-9 + 1e-9*abs(effective_lower_z) + 1e-9*abs(effective_upper_z)
-        lowest_z = -1e12 if unlimited_z else effective_lower_z - tolerance_z
-        highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
-        if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
-            raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: whether it has no limits
-        effective_lower_x = lower_x
-        effective_upper_x = upper_x
-        tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
-        lowest_x = -1e12 if unlimited_x else effective_lower_x - tolerance_x
-        highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
-        if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
-            raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: whether it has no limits
-        effective_lower_y = lower_y
-        effective_upper_y = upper_y
-        tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
-        lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
-        highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
-        machine_scale = 1.0  # characteristic length of the machine
-        return Constants(
-            offset_a=offset_a, offset_b=offset_b, offset_z=offset_z, check_limits=check_limits,
-            lower_a=effective_lower_a, upper_a=effective_upper_a, unlimited_a=unlimited_a, lowest_a=lowest_a,
-            highest_a=highest_a, lower_b=effective_lower_b, upper_b=effective_upper_b, unlimited_b=unlimited_b,
-            lowest_b=lowest_b, highest_b=highest_b, lower_z=effective_lower_z, upper_z=effective_upper_z,
-            unlimited_z=unlimited_z, lowest_z=lowest_z, highest_z=highest_z, lower_x=effective_lower_x,
-            upper_x=effective_upper_x, unlimited_x=unlimited_x, lowest_x=lowest_x, highest_x=highest_x,
-            lower_y=effective_lower_y, upper_y=effective_upper_y, unlimited_y=unlimited_y, lowest_y=lowest_y,
-            highest_y=highest_y, machine_scale=machine_scale,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a, axis_b, axis_z = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_z = k.offset_z
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
+        offset_a, offset_b, offset_z = k.offset_a, k.offset_b, k.offset_z
+        if not are_usable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         a = axis_a - offset_a
         b = axis_b - offset_b
-        x = 0.5*(a - b)
-        y = -0.5*(a + b)
+        x = 0.5 * (a - b)
+        y = -0.5 * (a + b)
         joint_z = axis_z - offset_z
         return ((x, y, joint_z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ())
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a, axis_b, axis_z = axes
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
+        if not are_usable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_z = k.offset_z
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
+        offset_a, offset_b, offset_z = k.offset_a, k.offset_b, k.offset_z
+        if not are_usable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         a = x - y  # a and b from the x and y equations, linear in both
         axis_a = a + offset_a
@@ -340,72 +175,36 @@ class HGantry3(OffsetKinematics):
         """The test of the limits."""
         axis_a, axis_b, axis_z = axes
         k = self._constants
-        highest_a = k.highest_a
-        highest_b = k.highest_b
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        highest_z = k.highest_z
-        lowest_a = k.lowest_a
-        lowest_b = k.lowest_b
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        lowest_z = k.lowest_z
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        # limits of A
-        if not (axis_a >= lowest_a):
-            missing = lowest_a - axis_a
-            return Diagnosis(Status.UNREACHABLE, "A: below its lower limit [u]", missing)
-        if not (axis_a <= highest_a):
-            missing = axis_a - highest_a
-            return Diagnosis(Status.UNREACHABLE, "A: above its upper limit [u]", missing)
-        # limits of B
-        if not (axis_b >= lowest_b):
-            missing = lowest_b - axis_b
-            return Diagnosis(Status.UNREACHABLE, "B: below its lower limit [u]", missing)
-        if not (axis_b <= highest_b):
-            missing = axis_b - highest_b
-            return Diagnosis(Status.UNREACHABLE, "B: above its upper limit [u]", missing)
-        # limits of Z
-        if not (axis_z >= lowest_z):
-            missing = lowest_z - axis_z
-            return Diagnosis(Status.UNREACHABLE, "Z: below its lower limit [u]", missing)
-        if not (axis_z <= highest_z):
-            missing = axis_z - highest_z
-            return Diagnosis(Status.UNREACHABLE, "Z: above its upper limit [u]", missing)
+        highest_a, highest_b, highest_x, highest_y = k.highest_a, k.highest_b, k.highest_x, k.highest_y
+        highest_z, lowest_a, lowest_b, lowest_x, lowest_y = k.highest_z, k.lowest_a, k.lowest_b, k.lowest_x, k.lowest_y
+        lowest_z, offset_a, offset_b = k.lowest_z, k.offset_a, k.offset_b
+        if not lowest_a <= axis_a <= highest_a:
+            return beyond("A", axis_a, lowest_a, highest_a, "u")
+        if not lowest_b <= axis_b <= highest_b:
+            return beyond("B", axis_b, lowest_b, highest_b, "u")
+        if not lowest_z <= axis_z <= highest_z:
+            return beyond("Z", axis_z, lowest_z, highest_z, "u")
         a = axis_a - offset_a
         b = axis_b - offset_b
-        value_x = 0.5*(a - b)  # X of the carriage
-        # limits of X of the carriage
-        if not (value_x >= lowest_x):
-            missing = lowest_x - value_x
-            return Diagnosis(Status.UNREACHABLE, "X of the carriage: below its lower limit [u]", missing)
-        if not (value_x <= highest_x):
-            missing = value_x - highest_x
-            return Diagnosis(Status.UNREACHABLE, "X of the carriage: above its upper limit [u]", missing)
-        value_y = -0.5*(a + b)  # Y of the carriage
-        # limits of Y of the carriage
-        if not (value_y >= lowest_y):
-            missing = lowest_y - value_y
-            return Diagnosis(Status.UNREACHABLE, "Y of the carriage: below its lower limit [u]", missing)
-        if not (value_y <= highest_y):
-            missing = value_y - highest_y
-            return Diagnosis(Status.UNREACHABLE, "Y of the carriage: above its upper limit [u]", missing)
+        value_x = 0.5 * (a - b)  # X of the carriage
+        if not lowest_x <= value_x <= highest_x:
+            return beyond("X of the carriage", value_x, lowest_x, highest_x, "u")
+        value_y = -0.5 * (a + b)  # Y of the carriage
+        if not lowest_y <= value_y <= highest_y:
+            return beyond("Y of the carriage", value_y, lowest_y, highest_y, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a, axis_b, axis_z = axes
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
+        if not are_usable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         return ()
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a, axis_b, axis_z = axes
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
+        if not are_usable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         return ((0.5, -0.5, 0.0), (-0.5, -0.5, 0.0), (0.0, 0.0, 1.0))
 
@@ -414,20 +213,14 @@ class HGantry3(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_z = k.offset_z
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
-        ):
+        offset_a, offset_b, offset_z = k.offset_a, k.offset_b, k.offset_z
+        if not are_usable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         y_minus_point_y = y - point_y
         x_minus_point_x = x - point_x
@@ -442,24 +235,21 @@ class HGantry3(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a, axis_b, axis_z = axes
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
+        if not are_usable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         return ()
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        """The one branch: see `Mechanism.branches`."""
+        return (self.branch(frame, (), reference),)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        solve = self._one_trusted
-        return solve(frame, signs, reference)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        (x, y, z), _ = frame
+        k = self._constants
+        offset_a, offset_b, offset_z = k.offset_a, k.offset_b, k.offset_z
+        a = x - y  # a and b from the x and y equations, linear in both
+        return (a + offset_a, offset_b - (x + y), offset_z + z)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

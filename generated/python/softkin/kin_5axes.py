@@ -34,73 +34,36 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._limits import beyond, beyond_turn
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.kin_5axes import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    tool_length: float
-    tool_side: float
-    offset_x: float
-    offset_y: float
-    offset_z: float
-    offset_a: float
-    offset_b: float
-    check_limits: bool
-    lower_x: float
-    upper_x: float
-    unlimited_x: bool
-    lowest_x: float
-    highest_x: float
-    lower_y: float
-    upper_y: float
-    unlimited_y: bool
-    lowest_y: float
-    highest_y: float
-    lower_z: float
-    upper_z: float
-    unlimited_z: bool
-    lowest_z: float
-    highest_z: float
-    lower_a: float
-    upper_a: float
-    unlimited_a: bool
-    lowest_a: float
-    highest_a: float
-    single_a: bool
-    mid_a: float
-    lower_b: float
-    upper_b: float
-    unlimited_b: bool
-    lowest_b: float
-    highest_b: float
-    single_b: bool
-    mid_b: float
-    machine_scale: float
-    tool_length_times_tool_side: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        tool_length, tool_side, offset_x, offset_y = p["tool_length"], p["tool_side"], p["offset_x"], p["offset_y"]
+        offset_z, offset_a, offset_b = p["offset_z"], p["offset_a"], p["offset_b"]
+        self.lowest_x, self.highest_x, *_ = machine._window("x")
+        self.lowest_y, self.highest_y, *_ = machine._window("y")
+        self.lowest_z, self.highest_z, *_ = machine._window("z")
+        self.lowest_a, self.highest_a, self.single_a, self.mid_a = machine._window("a")
+        self.lowest_b, self.highest_b, self.single_b, self.mid_b = machine._window("b")
+        tool_length_times_tool_side = tool_side * tool_length
+        self.tool_length, self.tool_side, self.offset_x, self.offset_y = tool_length, tool_side, offset_x, offset_y
+        self.offset_z, self.offset_a, self.offset_b = offset_z, offset_a, offset_b
+        self.tool_length_times_tool_side = tool_length_times_tool_side
 
 
 class Kin5Axes(Mechanism):
@@ -109,7 +72,7 @@ class Kin5Axes(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_5Axes"
     AXES = (
@@ -118,85 +81,34 @@ class Kin5Axes(Mechanism):
         Axis(name="Z", kind="linear", unit="u", meaning="Slide along Z", multi_turn=False),
         Axis(name="A", kind="rotary", unit="deg", meaning="Azimuth: turn about Z", multi_turn=True),
         Axis(
-            name="B", kind="rotary", unit="deg",
-            meaning="Inclination: turn about the turned Y, which moves the tool to +X", multi_turn=True,
+            name="B",
+            kind="rotary",
+            unit="deg",
+            meaning="Inclination: turn about the turned Y, which moves the tool to +X",
+            multi_turn=True,
         ),
     )
     PARAMETERS = (
-        Parameter(
-            name="tool_length", kind="distance", unit="u",
-            meaning="Where the axes A and B meet to the tool's tip, along the tool", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
+        Parameter.of("distance", "tool_length", "Where the axes A and B meet to the tool's tip, along the tool"),
+        Parameter.of(
+            "sign", "tool_side", "+1: the tool points along +Z (library 4.16 and later), -1: along -Z (library 4.12)"
         ),
-        Parameter(
-            name="tool_side", kind="sign", unit="",
-            meaning="+1: the tool points along +Z (library 4.16 and later), -1: along -Z (library 4.12)",
-            low=-1.0, high=1.0, low_is_open=False, default=1.0,
-        ),
-        Parameter(
-            name="offset_x", kind="distance", unit="u", meaning="X: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_y", kind="distance", unit="u", meaning="Y: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_z", kind="distance", unit="u", meaning="Z: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a", kind="angle", unit="deg", meaning="A: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_b", kind="angle", unit="deg", meaning="B: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_x", kind="distance", unit="u", meaning="X: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_x", kind="distance", unit="u", meaning="X: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_y", kind="distance", unit="u", meaning="Y: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_y", kind="distance", unit="u", meaning="Y: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_z", kind="distance", unit="u", meaning="Z: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_z", kind="distance", unit="u", meaning="Z: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a", kind="angle", unit="deg", meaning="A: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a", kind="angle", unit="deg", meaning="A: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_b", kind="angle", unit="deg", meaning="B: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_b", kind="angle", unit="deg", meaning="B: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("distance", "offset_x", "X: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_y", "Y: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_z", "Z: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a", "A: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_b", "B: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_x", "X: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_x", "X: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_y", "Y: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_y", "Y: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_z", "Z: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_z", "Z: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a", "A: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a", "A: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_b", "B: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_b", "B: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="roll", kind="branch", branches=("positive", "negative"), default=1),
@@ -214,11 +126,26 @@ class Kin5Axes(Mechanism):
     DISTANCE_AXES = (3, 4)
 
     def __init__(
-        self, *, tool_length: float = 0.0, tool_side: int = 1, offset_x: float = 0.0, offset_y: float = 0.0,
-        offset_z: float = 0.0, offset_a: float = 0.0, offset_b: float = 0.0, lower_x: float = 0.0,
-        upper_x: float = 0.0, lower_y: float = 0.0, upper_y: float = 0.0, lower_z: float = 0.0,
-        upper_z: float = 0.0, lower_a: float = 0.0, upper_a: float = 0.0, lower_b: float = 0.0,
-        upper_b: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        tool_length: float = 0.0,
+        tool_side: int = 1,
+        offset_x: float = 0.0,
+        offset_y: float = 0.0,
+        offset_z: float = 0.0,
+        offset_a: float = 0.0,
+        offset_b: float = 0.0,
+        lower_x: float = 0.0,
+        upper_x: float = 0.0,
+        lower_y: float = 0.0,
+        upper_y: float = 0.0,
+        lower_z: float = 0.0,
+        upper_z: float = 0.0,
+        lower_a: float = 0.0,
+        upper_a: float = 0.0,
+        lower_b: float = 0.0,
+        upper_b: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -241,160 +168,35 @@ class Kin5Axes(Mechanism):
         upper_b: B: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            tool_length, tool_side, offset_x, offset_y, offset_z, offset_a, offset_b, lower_x, upper_x, lower_y,
-            upper_y, lower_z, upper_z, lower_a, upper_a, lower_b, upper_b, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_x=-1e12, lowest_y=-1e12, lowest_z=-1e12, lowest_a=-1e12, lowest_b=-1e12, highest_x=1e12,
-                highest_y=1e12, highest_z=1e12, highest_a=1e12, highest_b=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, tool_length: float, tool_side: int, offset_x: float, offset_y: float, offset_z: float,
-        offset_a: float, offset_b: float, lower_x: float, upper_x: float, lower_y: float, upper_y: float,
-        lower_z: float, upper_z: float, lower_a: float, upper_a: float, lower_b: float, upper_b: float,
-        check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (tool_length >= -1e9 and tool_length <= 1e9):
-            raise self._refusal(
-                "tool_length: Where the axes A and B meet to the tool's tip, along the tool", tool_length=tool_length,
-            )
-        if not ((tool_side == -1) or (tool_side == 1)):
-            raise self._refusal(
-                "tool_side: +1: the tool points along +Z (library 4.16 and later), -1: along -Z (library 4.12)",
-                tool_side=tool_side,
-            )
-        if not (offset_x >= -1e9 and offset_x <= 1e9):
-            raise self._refusal("offset_x: X: axis value at the kinematic zero position", offset_x=offset_x)
-        if not (offset_y >= -1e9 and offset_y <= 1e9):
-            raise self._refusal("offset_y: Y: axis value at the kinematic zero position", offset_y=offset_y)
-        if not (offset_z >= -1e9 and offset_z <= 1e9):
-            raise self._refusal("offset_z: Z: axis value at the kinematic zero position", offset_z=offset_z)
-        if not (offset_a >= -1e9 and offset_a <= 1e9):
-            raise self._refusal("offset_a: A: axis value at the kinematic zero position", offset_a=offset_a)
-        if not (offset_b >= -1e9 and offset_b <= 1e9):
-            raise self._refusal("offset_b: B: axis value at the kinematic zero position", offset_b=offset_b)
-        if not (lower_x >= -1e9 and lower_x <= 1e9):
-            raise self._refusal("lower_x: X: lower limit of the axis, both 0: no limit", lower_x=lower_x)
-        if not (upper_x >= -1e9 and upper_x <= 1e9):
-            raise self._refusal("upper_x: X: upper limit of the axis, both 0: no limit", upper_x=upper_x)
-        if not (lower_y >= -1e9 and lower_y <= 1e9):
-            raise self._refusal("lower_y: Y: lower limit of the axis, both 0: no limit", lower_y=lower_y)
-        if not (upper_y >= -1e9 and upper_y <= 1e9):
-            raise self._refusal("upper_y: Y: upper limit of the axis, both 0: no limit", upper_y=upper_y)
-        if not (lower_z >= -1e9 and lower_z <= 1e9):
-            raise self._refusal("lower_z: Z: lower limit of the axis, both 0: no limit", lower_z=lower_z)
-        if not (upper_z >= -1e9 and upper_z <= 1e9):
-            raise self._refusal("upper_z: Z: upper limit of the axis, both 0: no limit", upper_z=upper_z)
-        if not (lower_a >= -1e9 and lower_a <= 1e9):
-            raise self._refusal("lower_a: A: lower limit of the axis, both 0: no limit", lower_a=lower_a)
-        if not (upper_a >= -1e9 and upper_a <= 1e9):
-            raise self._refusal("upper_a: A: upper limit of the axis, both 0: no limit", upper_a=upper_a)
-        if not (lower_b >= -1e9 and lower_b <= 1e9):
-            raise self._refusal("lower_b: B: lower limit of the axis, both 0: no limit", lower_b=lower_b)
-        if not (upper_b >= -1e9 and upper_b <= 1e9):
-            raise self._refusal("upper_b: B: upper limit of the axis, both 0: no limit", upper_b=upper_b)
-        if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
-            raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: whether it has no limits
-        effective_lower_x = lower_x
-        effective_upper_x = upper_x
-        tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
-        lowest_x = -1e12 if unlimited_x else effective_lower_x - tolerance_x
-        highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
-        if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
-            raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: whether it has no limits
-        effective_lower_y = lower_y
-        effective_upper_y = upper_y
-        tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
-        lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
-        highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
-        if not ((lower_z < upper_z) or (abs(lower_z) + abs(upper_z) <= 0.0)):
-            raise self._refusal("lower_z below upper_z, or both 0", lower_z=lower_z, upper_z=upper_z)
-        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: whether it has no limits
-        effective_lower_z = lower_z
-        effective_upper_z = upper_z
-        tolerance_z = 1e-9 + 1e-9*abs(effective_lower_z) + 1e-9*abs(effective_upper_z)
-        lowest_z = -1e12 if unlimited_z else effective_lower_z - tolerance_z
-        highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
-        if not ((lower_a < upper_a) or (abs(lower_a) + abs(upper_a) <= 0.0)):
-            raise self._refusal("lower_a below upper_a, or both 0", lower_a=lower_a, upper_a=upper_a)
-        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: whether it has no limits
-        effective_lower_a = lower_a
-        effective_upper_a = upper_a
-        tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
-        lowest_a = -1e12 if unlimited_a else effective_lower_a - tolerance_a
-        highest_a = 1e12 if unlimited_a else effective_upper_a + tolerance_a
-        # at most one turn is inside the limits
-        single_a = (not unlimited_a) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
-        mid_a = 0.5*effective_lower_a + 0.5*effective_upper_a
-        if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
-            raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
-        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: whether it has no limits
-        effective_lower_b = lower_b
-        effective_upper_b = upper_b
-        tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
-        lowest_b = -1e12 if unlimited_b else effective_lower_b - tolerance_b
-        highest_b = 1e12 if unlimited_b else effective_upper_b + tolerance_b
-        # at most one turn is inside the limits
-        single_b = (not unlimited_b) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
-        mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
-        machine_scale = 1.0  # characteristic length of the machine
-        tool_length_times_tool_side = tool_side*tool_length
-        return Constants(
-            tool_length=tool_length, tool_side=tool_side, offset_x=offset_x, offset_y=offset_y, offset_z=offset_z,
-            offset_a=offset_a, offset_b=offset_b, check_limits=check_limits, lower_x=effective_lower_x,
-            upper_x=effective_upper_x, unlimited_x=unlimited_x, lowest_x=lowest_x, highest_x=highest_x,
-            lower_y=effective_lower_y, upper_y=effective_upper_y, unlimited_y=unlimited_y, lowest_y=lowest_y,
-            highest_y=highest_y, lower_z=effective_lower_z, upper_z=effective_upper_z, unlimited_z=unlimited_z,
-            lowest_z=lowest_z, highest_z=highest_z, lower_a=effective_lower_a, upper_a=effective_upper_a,
-            unlimited_a=unlimited_a, lowest_a=lowest_a, highest_a=highest_a, single_a=single_a, mid_a=mid_a,
-            lower_b=effective_lower_b, upper_b=effective_upper_b, unlimited_b=unlimited_b, lowest_b=lowest_b,
-            highest_b=highest_b, single_b=single_b, mid_b=mid_b, machine_scale=machine_scale,
-            tool_length_times_tool_side=tool_length_times_tool_side,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
-        tool_length_times_tool_side = k.tool_length_times_tool_side
-        tool_side = k.tool_side
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
-            and -1e9 <= axis_z <= 1e9
-        ):
+        offset_a, offset_b, offset_x, offset_y, offset_z = k.offset_a, k.offset_b, k.offset_x, k.offset_y, k.offset_z
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
+        if not are_usable(axis_a, axis_b, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         cos_a = cos(a)
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
-        r31_at_b = -tool_side*sin_b
-        r13_at_b = -r31_at_b*cos_a
+        r31_at_b = -tool_side * sin_b
+        r13_at_b = -r31_at_b * cos_a
         joint_x = axis_x - offset_x
-        x = joint_x + r13_at_b*tool_length_times_tool_side
+        x = joint_x + r13_at_b * tool_length_times_tool_side
         sin_a = sin(a)
-        r23_at_b = -r31_at_b*sin_a
+        r23_at_b = -r31_at_b * sin_a
         joint_y = axis_y - offset_y
-        y = joint_y + r23_at_b*tool_length_times_tool_side
+        y = joint_y + r23_at_b * tool_length_times_tool_side
         cos_b = cos(b)
         joint_z = axis_z - offset_z
-        z = joint_z + tool_length_times_tool_side*cos_b
-        r11_at_b = cos_a*cos_b
-        r21_at_b = cos_b*sin_a
+        z = joint_z + tool_length_times_tool_side * cos_b
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
         return (
             (x, y, z),
             ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)),
@@ -405,30 +207,24 @@ class Kin5Axes(Mechanism):
         """The rotation of the frame."""
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        tool_side = k.tool_side
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
-            and -1e9 <= axis_z <= 1e9
-        ):
+        offset_a, offset_b, tool_side = k.offset_a, k.offset_b, k.tool_side
+        if not are_usable(axis_a, axis_b, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         cos_a = cos(a)
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         cos_b = cos(b)
-        r11_at_b = cos_a*cos_b
+        r11_at_b = cos_a * cos_b
         sin_a = sin(a)
         sin_b = sin(b)
-        r31_at_b = -tool_side*sin_b
-        r13_at_b = -r31_at_b*cos_a
-        r21_at_b = cos_b*sin_a
-        r23_at_b = -r31_at_b*sin_a
+        r31_at_b = -tool_side * sin_b
+        r13_at_b = -r31_at_b * cos_a
+        r21_at_b = cos_b * sin_a
+        r23_at_b = -r31_at_b * sin_a
         return ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -437,49 +233,37 @@ class Kin5Axes(Mechanism):
         turn_a, turn_b = turns
         _, _, _, ref_a, ref_b = reference
         k = self._constants
-        mid_a = k.mid_a
-        mid_b = k.mid_b
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
-        single_a = k.single_a
-        single_b = k.single_b
-        tool_length_times_tool_side = k.tool_length_times_tool_side
-        tool_side = k.tool_side
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a <= 1e9
-            and -1e9 <= ref_b <= 1e9
-        ):
+        mid_a, mid_b, offset_a, offset_b, offset_x = k.mid_a, k.mid_b, k.offset_a, k.offset_b, k.offset_x
+        offset_y, offset_z, single_a, single_b = k.offset_y, k.offset_z, k.single_a, k.single_b
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
+        if not are_usable(x, y, z, ref_a, ref_b):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        wrist_x = x - r13*tool_length_times_tool_side  # wrist centre: the point in which the last axes intersect
+        wrist_x = x - r13 * tool_length_times_tool_side  # wrist centre: the point in which the last axes intersect
         axis_x = offset_x + wrist_x
-        wrist_y = y - r23*tool_length_times_tool_side
+        wrist_y = y - r23 * tool_length_times_tool_side
         axis_y = offset_y + wrist_y
-        wrist_z = z - r33*tool_length_times_tool_side
+        wrist_z = z - r33 * tool_length_times_tool_side
         axis_z = offset_z + wrist_z
-        r13_of_a = r13/tool_side
-        r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
+        r13_of_a = r13 / tool_side
+        r23_of_a = r23 / tool_side
+        radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_a > 1e-11:
-            direction_x_a = sigma_roll*r13_of_a
-            direction_y_a = sigma_roll*r23_of_a
+            direction_x_a = sigma_roll * r13_of_a
+            direction_y_a = sigma_roll * r23_of_a
         else:
-            free_a = (ref_a - offset_a)*DEGREE
+            free_a = (ref_a - offset_a) * DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
         open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
-        near_a = 360.0*(turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
-        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0)/DEGREE  # A: whole turns added
+        near_a = 360.0 * (turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
+        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0) / DEGREE  # A: whole turns added
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
-        a_radius_of_b = sigma_roll*radius_a
+        a_radius_of_b = sigma_roll * radius_a
         open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
-        near_b = 360.0*(turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
-        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0)/DEGREE  # B: whole turns added
+        near_b = 360.0 * (turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
+        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0) / DEGREE  # B: whole turns added
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
         return (axis_x, axis_y, axis_z, axis_a, axis_b)
@@ -488,59 +272,19 @@ class Kin5Axes(Mechanism):
         """The test of the limits."""
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self._constants
-        highest_a = k.highest_a
-        highest_b = k.highest_b
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        highest_z = k.highest_z
-        lowest_a = k.lowest_a
-        lowest_b = k.lowest_b
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
+        highest_a, highest_b, highest_x, highest_y = k.highest_a, k.highest_b, k.highest_x, k.highest_y
+        highest_z, lowest_a, lowest_b, lowest_x, lowest_y = k.highest_z, k.lowest_a, k.lowest_b, k.lowest_x, k.lowest_y
         lowest_z = k.lowest_z
-        # limits of A
-        if not (axis_a >= lowest_a):
-            missing = lowest_a - axis_a
-            if turn := turn_inside(axis_a, lowest_a, highest_a):
-                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A: below its lower limit [deg]", missing)
-        if not (axis_a <= highest_a):
-            missing = axis_a - highest_a
-            if turn := turn_inside(axis_a, lowest_a, highest_a):
-                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A: above its upper limit [deg]", missing)
-        # limits of B
-        if not (axis_b >= lowest_b):
-            missing = lowest_b - axis_b
-            if turn := turn_inside(axis_b, lowest_b, highest_b):
-                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "B: below its lower limit [deg]", missing)
-        if not (axis_b <= highest_b):
-            missing = axis_b - highest_b
-            if turn := turn_inside(axis_b, lowest_b, highest_b):
-                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "B: above its upper limit [deg]", missing)
-        # limits of X
-        if not (axis_x >= lowest_x):
-            missing = lowest_x - axis_x
-            return Diagnosis(Status.UNREACHABLE, "X: below its lower limit [u]", missing)
-        if not (axis_x <= highest_x):
-            missing = axis_x - highest_x
-            return Diagnosis(Status.UNREACHABLE, "X: above its upper limit [u]", missing)
-        # limits of Y
-        if not (axis_y >= lowest_y):
-            missing = lowest_y - axis_y
-            return Diagnosis(Status.UNREACHABLE, "Y: below its lower limit [u]", missing)
-        if not (axis_y <= highest_y):
-            missing = axis_y - highest_y
-            return Diagnosis(Status.UNREACHABLE, "Y: above its upper limit [u]", missing)
-        # limits of Z
-        if not (axis_z >= lowest_z):
-            missing = lowest_z - axis_z
-            return Diagnosis(Status.UNREACHABLE, "Z: below its lower limit [u]", missing)
-        if not (axis_z <= highest_z):
-            missing = axis_z - highest_z
-            return Diagnosis(Status.UNREACHABLE, "Z: above its upper limit [u]", missing)
+        if not lowest_a <= axis_a <= highest_a:
+            return beyond_turn("A", axis_a, lowest_a, highest_a)
+        if not lowest_b <= axis_b <= highest_b:
+            return beyond_turn("B", axis_b, lowest_b, highest_b)
+        if not lowest_x <= axis_x <= highest_x:
+            return beyond("X", axis_x, lowest_x, highest_x, "u")
+        if not lowest_y <= axis_y <= highest_y:
+            return beyond("Y", axis_y, lowest_y, highest_y, "u")
+        if not lowest_z <= axis_z <= highest_z:
+            return beyond("Z", axis_z, lowest_z, highest_z, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
@@ -548,13 +292,9 @@ class Kin5Axes(Mechanism):
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self._constants
         offset_b = k.offset_b
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
-            and -1e9 <= axis_z <= 1e9
-        ):
+        if not are_usable(axis_a, axis_b, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
         return (sin_b,)
 
@@ -562,45 +302,36 @@ class Kin5Axes(Mechanism):
         """The Jacobian by rows, per radian."""
         axis_x, axis_y, axis_z, axis_a, axis_b = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_x = k.offset_x
-        offset_y = k.offset_y
-        offset_z = k.offset_z
-        tool_length_times_tool_side = k.tool_length_times_tool_side
-        tool_side = k.tool_side
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
-            and -1e9 <= axis_z <= 1e9
-        ):
+        offset_a, offset_b, offset_x, offset_y, offset_z = k.offset_a, k.offset_b, k.offset_x, k.offset_y, k.offset_z
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
+        if not are_usable(axis_a, axis_b, axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
-        r31_at_b = -tool_side*sin_b
+        r31_at_b = -tool_side * sin_b
         cos_b = cos(b)
-        r11_at_b = cos_a*cos_b
-        r21_at_b = cos_b*sin_a
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
         joint_y = axis_y - offset_y
-        r23_at_b = -r31_at_b*sin_a
-        y = joint_y + r23_at_b*tool_length_times_tool_side
+        r23_at_b = -r31_at_b * sin_a
+        y = joint_y + r23_at_b * tool_length_times_tool_side
         joint_y_minus_y = joint_y - y
         joint_z = axis_z - offset_z
-        z = joint_z + tool_length_times_tool_side*cos_b
-        part = (joint_z - z)*tool_side
+        z = joint_z + tool_length_times_tool_side * cos_b
+        part = (joint_z - z) * tool_side
         joint_x = axis_x - offset_x
-        r13_at_b = -r31_at_b*cos_a
-        x = joint_x + r13_at_b*tool_length_times_tool_side
+        r13_at_b = -r31_at_b * cos_a
+        x = joint_x + r13_at_b * tool_length_times_tool_side
         x_minus_joint_x = x - joint_x
         return (
-            (1.0, 0.0, 0.0, joint_y_minus_y, -part*cos_a),
-            (0.0, 1.0, 0.0, x_minus_joint_x, -part*sin_a),
-            (0.0, 0.0, 1.0, 0.0, (joint_y_minus_y*sin_a - x_minus_joint_x*cos_a)*tool_side),
-            (0.0, 0.0, 0.0, r31_at_b, tool_side*(r21_at_b*cos_a - r11_at_b*sin_a)),
-            (0.0, 0.0, 0.0, 0.0, tool_side*(cos_a*cos_a + sin_a*sin_a)),
+            (1.0, 0.0, 0.0, joint_y_minus_y, -part * cos_a),
+            (0.0, 1.0, 0.0, x_minus_joint_x, -part * sin_a),
+            (0.0, 0.0, 1.0, 0.0, (joint_y_minus_y * sin_a - x_minus_joint_x * cos_a) * tool_side),
+            (0.0, 0.0, 0.0, r31_at_b, tool_side * (r21_at_b * cos_a - r11_at_b * sin_a)),
+            (0.0, 0.0, 0.0, 0.0, tool_side * (cos_a * cos_a + sin_a * sin_a)),
         )
 
     def _image(self) -> Image | Status:
@@ -618,8 +349,7 @@ class Kin5Axes(Mechanism):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

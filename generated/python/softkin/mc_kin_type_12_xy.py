@@ -32,90 +32,127 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.mc_kin_type_12_xy import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    link_length_1: float
-    link_length_2: float
-    link_length_3: float
-    link_length_4: float
-    link_length_5: float
-    swap_xy: bool
-    offset_a1: float
-    offset_a2: float
-    e_right: bool
-    min_type2_margin: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    single_a1: bool
-    mid_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    single_a2: bool
-    mid_a2: float
-    machine_scale: float
-    assembly_sign: float
-    part_of_normal_divisor: float
-    link_length_2_squared_times_rounding: float
-    link_length_2_plus_radius_2: float
-    link_length_2_minus_radius_2: float
-    part_of_foot_fraction: float
-    link_length_2_by_link_length_3: float
-    link_length_3_by_link_length_2: float
-    link_length_2_times_link_length_4: float
-    part_of_branch_w: float
-    part_of_pivot_rear_x: float
-    part_of_scaled_pivot_rear_y: float
-    part_of_scaled_pivot_rear_y_2: float
-    machine_scale_times_plane: float
-    link_length_1_times_shortest_link: float
-    link_length_5_times_shortest_link: float
-    link_length_1_minus_link_length_2: float
-    link_length_1_plus_link_length_2: float
-    link_length_5_minus_link_length_4: float
-    link_length_4_plus_link_length_5: float
-    part_of_type2_arms_aligned: float
-    part_of_along_a2: float
-    part_of_margin_arms_aligned: float
-    machine_scale_squared_times_free_angle: float
-    twice_link_length_1: float
-    part_of_slope_2_by_x: float
-    link_length_3_times_2_by_link_length_2: float
-    part_of_slope_2_by_a1: float
-    twice_link_length_5: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        link_length_1, link_length_2, link_length_3 = p["link_length_1"], p["link_length_2"], p["link_length_3"]
+        link_length_4, link_length_5, swap_xy = p["link_length_4"], p["link_length_5"], bool(p["swap_xy"])
+        offset_a1, offset_a2, e_right = p["offset_a1"], p["offset_a2"], bool(p["e_right"])
+        min_type2_margin = p["min_type2_margin"]
+        if not (link_length_3 + link_length_4 + link_length_5 > link_length_1):
+            raise machine._refusal(
+                "link 1 must be shorter than the other links of the loop together",
+                "link_length_1",
+                "link_length_3",
+                "link_length_4",
+                "link_length_5",
+            )
+        if not (link_length_1 + link_length_4 + link_length_5 > link_length_3):
+            raise machine._refusal(
+                "link 3 must be shorter than the other links of the loop together",
+                "link_length_1",
+                "link_length_3",
+                "link_length_4",
+                "link_length_5",
+            )
+        if not (link_length_1 + link_length_3 + link_length_5 > link_length_4):
+            raise machine._refusal(
+                "link 4 must be shorter than the other links of the loop together",
+                "link_length_1",
+                "link_length_3",
+                "link_length_4",
+                "link_length_5",
+            )
+        if not (link_length_1 + link_length_3 + link_length_4 > link_length_5):
+            raise machine._refusal(
+                "link 5 must be shorter than the other links of the loop together",
+                "link_length_1",
+                "link_length_3",
+                "link_length_4",
+                "link_length_5",
+            )
+        self.lowest_a1, self.highest_a1, self.single_a1, self.mid_a1 = machine._window("a1")
+        self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
+        # characteristic length of the machine
+        machine_scale = link_length_1 + link_length_2 + link_length_3 + link_length_4 + link_length_5
+        radius_2 = link_length_2 * link_length_4 / link_length_3
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = (-1.0 if e_right else 1.0) if not swap_xy else (1.0 if e_right else -1.0)
+        part_of_normal_divisor = 1e-22 * link_length_2 * link_length_2
+        link_length_2_squared_times_rounding = 1e-12 * link_length_2 * link_length_2
+        link_length_2_plus_radius_2 = link_length_2 + radius_2
+        link_length_2_minus_radius_2 = link_length_2 - radius_2
+        part_of_foot_fraction = link_length_2_minus_radius_2 * link_length_2_plus_radius_2
+        link_length_2_by_link_length_3 = link_length_2 / link_length_3
+        link_length_3_by_link_length_2 = link_length_3 / link_length_2
+        link_length_2_times_link_length_4 = link_length_2 * link_length_4
+        link_length_2_plus_link_length_3 = link_length_2 + link_length_3
+        part_of_branch_w = link_length_1 * link_length_2_plus_link_length_3
+        part_of_pivot_rear_x = link_length_1 + link_length_1 * link_length_3 / link_length_2
+        part_of_scaled_pivot_rear_y = link_length_2 * part_of_pivot_rear_x / link_length_3
+        part_of_scaled_pivot_rear_y_2 = link_length_2 * link_length_5 / link_length_3
+        machine_scale_times_plane = 1e-6 * machine_scale
+        link_length_1_times_shortest_link = 1e-9 * link_length_1
+        link_length_5_times_shortest_link = 1e-9 * link_length_5
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+        link_length_5_minus_link_length_4 = link_length_5 - link_length_4
+        link_length_4_plus_link_length_5 = link_length_4 + link_length_5
+        part_of_type2_arms_aligned = assembly_sign * link_length_3 / (link_length_4 * link_length_2 * link_length_2)
+        part_of_along_a2 = link_length_1 * link_length_2_plus_link_length_3 / link_length_2
+        part_of_margin_arms_aligned = link_length_3 / (link_length_4 * link_length_2 * link_length_2)
+        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        twice_link_length_1 = 2.0 * link_length_1
+        link_length_3_by_link_length_2_plus_one = 1.0 + link_length_3_by_link_length_2
+        part_of_slope_2_by_x = link_length_1 * link_length_3_by_link_length_2_plus_one
+        link_length_3_times_2_by_link_length_2 = 2.0 * link_length_3 / link_length_2
+        part_of_slope_2_by_a1 = 2.0 * link_length_1 * link_length_3_by_link_length_2_plus_one
+        twice_link_length_5 = 2.0 * link_length_5
+        self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
+        self.link_length_4, self.link_length_5, self.swap_xy = link_length_4, link_length_5, swap_xy
+        self.offset_a1, self.offset_a2, self.min_type2_margin = offset_a1, offset_a2, min_type2_margin
+        self.machine_scale, self.assembly_sign = machine_scale, assembly_sign
+        self.part_of_normal_divisor = part_of_normal_divisor
+        self.link_length_2_squared_times_rounding = link_length_2_squared_times_rounding
+        self.link_length_2_plus_radius_2 = link_length_2_plus_radius_2
+        self.link_length_2_minus_radius_2 = link_length_2_minus_radius_2
+        self.part_of_foot_fraction = part_of_foot_fraction
+        self.link_length_2_by_link_length_3 = link_length_2_by_link_length_3
+        self.link_length_3_by_link_length_2 = link_length_3_by_link_length_2
+        self.link_length_2_times_link_length_4 = link_length_2_times_link_length_4
+        self.part_of_branch_w, self.part_of_pivot_rear_x = part_of_branch_w, part_of_pivot_rear_x
+        self.part_of_scaled_pivot_rear_y = part_of_scaled_pivot_rear_y
+        self.part_of_scaled_pivot_rear_y_2 = part_of_scaled_pivot_rear_y_2
+        self.machine_scale_times_plane = machine_scale_times_plane
+        self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
+        self.link_length_5_times_shortest_link = link_length_5_times_shortest_link
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
+        self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
+        self.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4
+        self.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5
+        self.part_of_type2_arms_aligned, self.part_of_along_a2 = part_of_type2_arms_aligned, part_of_along_a2
+        self.part_of_margin_arms_aligned = part_of_margin_arms_aligned
+        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
+        self.twice_link_length_1, self.part_of_slope_2_by_x = twice_link_length_1, part_of_slope_2_by_x
+        self.link_length_3_times_2_by_link_length_2 = link_length_3_times_2_by_link_length_2
+        self.part_of_slope_2_by_a1, self.twice_link_length_5 = part_of_slope_2_by_a1, twice_link_length_5
 
 
 class KinType12XY(OffsetKinematics):
@@ -124,81 +161,37 @@ class KinType12XY(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
     AXES = (
         Axis(
-            name="A1", kind="rotary", unit="deg", meaning="Upper arm; positive clockwise, zero along -Y",
+            name="A1",
+            kind="rotary",
+            unit="deg",
+            meaning="Upper arm; positive clockwise, zero along -Y",
             multi_turn=True,
         ),
-        Axis(
-            name="A2", kind="rotary", unit="deg", meaning="Crank; positive clockwise, zero along -X",
-            multi_turn=True,
-        ),
+        Axis(name="A2", kind="rotary", unit="deg", meaning="Crank; positive clockwise, zero along -X", multi_turn=True),
     )
     PARAMETERS = (
-        Parameter(
-            name="link_length_1", kind="length", unit="u", meaning="Upper arm, origin to T", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
+        Parameter.of("length", "link_length_1", "Upper arm, origin to T"),
+        Parameter.of("length", "link_length_2", "Forearm, T to the TCP"),
+        Parameter.of("length", "link_length_3", "Rear extension of the forearm, T to E"),
+        Parameter.of("length", "link_length_4", "Rod, E to W"),
+        Parameter.of("length", "link_length_5", "Crank, origin to W"),
+        Parameter.of("flag", "swap_xy", "The mirrored reading: X and Y exchanged"),
+        Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "e_right", "assembly mode: right instead of left"),
+        Parameter.of(
+            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
         ),
-        Parameter(
-            name="link_length_2", kind="length", unit="u", meaning="Forearm, T to the TCP", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="link_length_3", kind="length", unit="u", meaning="Rear extension of the forearm, T to E",
-            low=0.0, high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="link_length_4", kind="length", unit="u", meaning="Rod, E to W", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="link_length_5", kind="length", unit="u", meaning="Crank, origin to W", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="swap_xy", kind="flag", unit="", meaning="The mirrored reading: X and Y exchanged", low=0.0,
-            high=1.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a1", kind="angle", unit="deg", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="angle", unit="deg", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="angle", unit="deg", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="angle", unit="deg", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="angle", unit="deg", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="angle", unit="deg", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="e_right", kind="flag", unit="", meaning="assembly mode: right instead of left", low=0.0,
-            high=1.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
-            low_is_open=False, default=0.001,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="t", kind="branch", branches=("left", "right"), default=1),
@@ -217,10 +210,23 @@ class KinType12XY(OffsetKinematics):
     DISTANCE_AXES = (0, 1)
 
     def __init__(
-        self, *, link_length_1: float, link_length_2: float, link_length_3: float, link_length_4: float,
-        link_length_5: float, swap_xy: bool = False, offset_a1: float = 0.0, offset_a2: float = 0.0,
-        lower_a1: float = 0.0, upper_a1: float = 0.0, lower_a2: float = 0.0, upper_a2: float = 0.0,
-        e_right: bool = False, min_type2_margin: float = 0.001, check_limits: bool = True,
+        self,
+        *,
+        link_length_1: float,
+        link_length_2: float,
+        link_length_3: float,
+        link_length_4: float,
+        link_length_5: float,
+        swap_xy: bool = False,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        e_right: bool = False,
+        min_type2_margin: float = 0.001,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -240,192 +246,37 @@ class KinType12XY(OffsetKinematics):
         min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            link_length_1, link_length_2, link_length_3, link_length_4, link_length_5, swap_xy, offset_a1, offset_a2,
-            lower_a1, upper_a1, lower_a2, upper_a2, e_right, min_type2_margin, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(lowest_a1=-1e12, lowest_a2=-1e12, highest_a1=1e12, highest_a2=1e12)
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, link_length_1: float, link_length_2: float, link_length_3: float, link_length_4: float,
-        link_length_5: float, swap_xy: bool, offset_a1: float, offset_a2: float, lower_a1: float, upper_a1: float,
-        lower_a2: float, upper_a2: float, e_right: bool, min_type2_margin: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (link_length_1 <= 1e9 and link_length_1 > 0.0):
-            raise self._refusal("link_length_1: Upper arm, origin to T", link_length_1=link_length_1)
-        if not (link_length_2 <= 1e9 and link_length_2 > 0.0):
-            raise self._refusal("link_length_2: Forearm, T to the TCP", link_length_2=link_length_2)
-        if not (link_length_3 <= 1e9 and link_length_3 > 0.0):
-            raise self._refusal("link_length_3: Rear extension of the forearm, T to E", link_length_3=link_length_3)
-        if not (link_length_4 <= 1e9 and link_length_4 > 0.0):
-            raise self._refusal("link_length_4: Rod, E to W", link_length_4=link_length_4)
-        if not (link_length_5 <= 1e9 and link_length_5 > 0.0):
-            raise self._refusal("link_length_5: Crank, origin to W", link_length_5=link_length_5)
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
-            raise self._refusal(
-                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
-                min_type2_margin=min_type2_margin,
-            )
-        if not (link_length_3 + link_length_4 + link_length_5 > link_length_1):
-            raise self._refusal(
-                "link 1 must be shorter than the other links of the loop together", link_length_1=link_length_1,
-                link_length_3=link_length_3, link_length_4=link_length_4, link_length_5=link_length_5,
-            )
-        if not (link_length_1 + link_length_4 + link_length_5 > link_length_3):
-            raise self._refusal(
-                "link 3 must be shorter than the other links of the loop together", link_length_1=link_length_1,
-                link_length_3=link_length_3, link_length_4=link_length_4, link_length_5=link_length_5,
-            )
-        if not (link_length_1 + link_length_3 + link_length_5 > link_length_4):
-            raise self._refusal(
-                "link 4 must be shorter than the other links of the loop together", link_length_1=link_length_1,
-                link_length_3=link_length_3, link_length_4=link_length_4, link_length_5=link_length_5,
-            )
-        if not (link_length_1 + link_length_3 + link_length_4 > link_length_5):
-            raise self._refusal(
-                "link 5 must be shorter than the other links of the loop together", link_length_1=link_length_1,
-                link_length_3=link_length_3, link_length_4=link_length_4, link_length_5=link_length_5,
-            )
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # at most one turn is inside the limits
-        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-        mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # at most one turn is inside the limits
-        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-        mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
-        # characteristic length of the machine
-        machine_scale = link_length_1 + link_length_2 + link_length_3 + link_length_4 + link_length_5
-        radius_2 = link_length_2*link_length_4/link_length_3
-        # assembly mode of this machine: the sign of the determinant of its rods
-        assembly_sign = (-1.0 if e_right else 1.0) if not swap_xy else (1.0 if e_right else -1.0)
-        part_of_normal_divisor = 1e-22*link_length_2*link_length_2
-        link_length_2_squared_times_rounding = 1e-12*link_length_2*link_length_2
-        link_length_2_plus_radius_2 = link_length_2 + radius_2
-        link_length_2_minus_radius_2 = link_length_2 - radius_2
-        part_of_foot_fraction = link_length_2_minus_radius_2*link_length_2_plus_radius_2
-        link_length_2_by_link_length_3 = link_length_2/link_length_3
-        link_length_3_by_link_length_2 = link_length_3/link_length_2
-        link_length_2_times_link_length_4 = link_length_2*link_length_4
-        link_length_2_plus_link_length_3 = link_length_2 + link_length_3
-        part_of_branch_w = link_length_1*link_length_2_plus_link_length_3
-        part_of_pivot_rear_x = link_length_1 + link_length_1*link_length_3/link_length_2
-        part_of_scaled_pivot_rear_y = link_length_2*part_of_pivot_rear_x/link_length_3
-        part_of_scaled_pivot_rear_y_2 = link_length_2*link_length_5/link_length_3
-        machine_scale_times_plane = 1e-6*machine_scale
-        link_length_1_times_shortest_link = 1e-9*link_length_1
-        link_length_5_times_shortest_link = 1e-9*link_length_5
-        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        link_length_5_minus_link_length_4 = link_length_5 - link_length_4
-        link_length_4_plus_link_length_5 = link_length_4 + link_length_5
-        part_of_type2_arms_aligned = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
-        part_of_along_a2 = link_length_1*link_length_2_plus_link_length_3/link_length_2
-        part_of_margin_arms_aligned = link_length_3/(link_length_4*link_length_2*link_length_2)
-        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
-        twice_link_length_1 = 2.0*link_length_1
-        link_length_3_by_link_length_2_plus_one = 1.0 + link_length_3_by_link_length_2
-        part_of_slope_2_by_x = link_length_1*link_length_3_by_link_length_2_plus_one
-        link_length_3_times_2_by_link_length_2 = 2.0*link_length_3/link_length_2
-        part_of_slope_2_by_a1 = 2.0*link_length_1*link_length_3_by_link_length_2_plus_one
-        twice_link_length_5 = 2.0*link_length_5
-        return Constants(
-            link_length_1=link_length_1, link_length_2=link_length_2, link_length_3=link_length_3,
-            link_length_4=link_length_4, link_length_5=link_length_5, swap_xy=swap_xy, offset_a1=offset_a1,
-            offset_a2=offset_a2, e_right=e_right, min_type2_margin=min_type2_margin, check_limits=check_limits,
-            lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
-            highest_a1=highest_a1, single_a1=single_a1, mid_a1=mid_a1, lower_a2=effective_lower_a2,
-            upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2,
-            single_a2=single_a2, mid_a2=mid_a2, machine_scale=machine_scale, assembly_sign=assembly_sign,
-            part_of_normal_divisor=part_of_normal_divisor,
-            link_length_2_squared_times_rounding=link_length_2_squared_times_rounding,
-            link_length_2_plus_radius_2=link_length_2_plus_radius_2,
-            link_length_2_minus_radius_2=link_length_2_minus_radius_2, part_of_foot_fraction=part_of_foot_fraction,
-            link_length_2_by_link_length_3=link_length_2_by_link_length_3,
-            link_length_3_by_link_length_2=link_length_3_by_link_length_2,
-            link_length_2_times_link_length_4=link_length_2_times_link_length_4, part_of_branch_w=part_of_branch_w,
-            part_of_pivot_rear_x=part_of_pivot_rear_x, part_of_scaled_pivot_rear_y=part_of_scaled_pivot_rear_y,
-            part_of_scaled_pivot_rear_y_2=part_of_scaled_pivot_rear_y_2,
-            machine_scale_times_plane=machine_scale_times_plane,
-            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
-            link_length_5_times_shortest_link=link_length_5_times_shortest_link,
-            link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
-            link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
-            link_length_5_minus_link_length_4=link_length_5_minus_link_length_4,
-            link_length_4_plus_link_length_5=link_length_4_plus_link_length_5,
-            part_of_type2_arms_aligned=part_of_type2_arms_aligned, part_of_along_a2=part_of_along_a2,
-            part_of_margin_arms_aligned=part_of_margin_arms_aligned,
-            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
-            twice_link_length_1=twice_link_length_1, part_of_slope_2_by_x=part_of_slope_2_by_x,
-            link_length_3_times_2_by_link_length_2=link_length_3_times_2_by_link_length_2,
-            part_of_slope_2_by_a1=part_of_slope_2_by_a1, twice_link_length_5=twice_link_length_5,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
+        assembly_sign, link_length_1, link_length_2 = k.assembly_sign, k.link_length_1, k.link_length_2
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
-        link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_branch_w = k.part_of_branch_w
-        part_of_foot_fraction = k.part_of_foot_fraction
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
-        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
-        swap_xy = k.swap_xy
+        link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
+        offset_a2, part_of_branch_w, part_of_foot_fraction = k.offset_a2, k.part_of_branch_w, k.part_of_foot_fraction
+        part_of_normal_divisor, part_of_scaled_pivot_rear_y = k.part_of_normal_divisor, k.part_of_scaled_pivot_rear_y
+        part_of_scaled_pivot_rear_y_2, swap_xy = k.part_of_scaled_pivot_rear_y_2, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
+        pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_upper_y = -link_length_1 * cos_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -439,24 +290,27 @@ class KinType12XY(OffsetKinematics):
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)  # distance between the centres
-        one_by_normal_square = 1.0/normal_divisor
+        between_centres = sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0  # distance between the centres
+        one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
         height_square = (
-            0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
-            *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
-            *one_by_normal_square
+            0.25
+            * (link_length_2_plus_radius_2 - between_centres)
+            * (between_centres + link_length_2_minus_radius_2)
+            * (between_centres + link_length_2_plus_radius_2)
+            * (between_centres - link_length_2_minus_radius_2)
+            * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5*(normal_divisor + part_of_foot_fraction)*one_by_normal_square
-        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        foot_fraction = 0.5 * (normal_divisor + part_of_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal
-        foot_y = centre_1_to_2_y*foot_fraction
-        y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = centre_1_x + foot_x - centre_1_to_2_y * height_by_normal
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = centre_1_y + foot_y + centre_1_to_2_x * height_by_normal
         # rod upper: known part of its vector
         if swap_xy:
             span_upper_x = y
@@ -467,46 +321,39 @@ class KinType12XY(OffsetKinematics):
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
+        branch_t = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / link_length_2
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
         branch_w = (
-            (
-                (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)*cos_a2
-                + (part_of_branch_w*sin_a1 - link_length_2*span_rear_x)*sin_a2
-            )
-            /link_length_2_times_link_length_4
-        )
+            (part_of_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
+            + (part_of_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
+        ) / link_length_2_times_link_length_4
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_t, branch_w))
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
+        link_length_1, link_length_2_minus_radius_2 = k.link_length_1, k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
-        link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_normal_divisor = k.part_of_normal_divisor
+        link_length_2_squared_times_rounding, offset_a1 = k.link_length_2_squared_times_rounding, k.offset_a1
+        offset_a2, part_of_normal_divisor = k.offset_a2, k.part_of_normal_divisor
         part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
-        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
-        swap_xy = k.swap_xy
+        part_of_scaled_pivot_rear_y_2, swap_xy = k.part_of_scaled_pivot_rear_y_2, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
+        pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_upper_y = -link_length_1 * cos_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -520,16 +367,19 @@ class KinType12XY(OffsetKinematics):
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
         height_square = (
-            0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
-            *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
-            /normal_square
+            0.25
+            * (link_length_2_plus_radius_2 - between_centres)
+            * (between_centres + link_length_2_minus_radius_2)
+            * (between_centres + link_length_2_plus_radius_2)
+            * (between_centres - link_length_2_minus_radius_2)
+            / normal_square
         )
         # the rods do not meet
         if not (height_square >= -link_length_2_squared_times_rounding):
@@ -537,7 +387,7 @@ class KinType12XY(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -545,32 +395,20 @@ class KinType12XY(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_along_a2 = k.part_of_along_a2
-        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
+        part_of_along_a2, part_of_scaled_pivot_rear_y = k.part_of_along_a2, k.part_of_scaled_pivot_rear_y
         part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
-        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
+        part_of_type2_arms_aligned, single_a1, single_a2 = k.part_of_type2_arms_aligned, k.single_a1, k.single_a2
         swap_xy = k.swap_xy
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
-            and -1e9 <= ref_a2 <= 1e9
-        ):
+        if not are_usable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -584,53 +422,54 @@ class KinType12XY(OffsetKinematics):
             span_upper_x = x
             span_upper_y = y
         # effective length of the arm that a1 turns
-        effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        effective_a1 = sqrt(span_upper_x * span_upper_x + span_upper_y * span_upper_y)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
         # law of cosines for a1: rod upper: 1 - cosine, times a scale
-        one_less_cos_a1 = (
-            (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
+        one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2) * (
+            divisor_a1 + link_length_1_plus_link_length_2
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (
-            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
+        one_plus_cos_a1 = (link_length_1_plus_link_length_2 - divisor_a1) * (
+            divisor_a1 - link_length_1_minus_link_length_2
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/divisor_of_cos_a1
-        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
+        sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
-        pivot_upper_y = -link_length_1*cos_a1
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - part_of_along_a2*sin_a1
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
-        across_a2 = part_of_along_a2*cos_a1 - span_rear_y
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
+        cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
+        pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
+        pivot_upper_y = -link_length_1 * cos_a1
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        along_a2 = span_rear_x - part_of_along_a2 * sin_a1
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
+        across_a2 = part_of_along_a2 * cos_a1 - span_rear_y
+        # effective length of the arm that a2 turns
+        effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         # law of cosines for a2: rod rear: 1 - cosine, times a scale
-        one_less_cos_a2 = (
-            (divisor_a2 + link_length_4_plus_link_length_5)*(divisor_a2 + link_length_5_minus_link_length_4)
+        one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
+            divisor_a2 + link_length_5_minus_link_length_4
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (
-            (link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4)
+        one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
+            divisor_a2 - link_length_5_minus_link_length_4
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
+        cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
-        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
+        sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
@@ -646,13 +485,15 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
-                0.5*(
+                0.5
+                * (
                     abs(divisor_a1 - link_length_1_minus_link_length_2)
                     + abs(divisor_a1 + link_length_1_minus_link_length_2)
                     + abs(divisor_a1 - link_length_1_plus_link_length_2)
                     + abs(divisor_a1 + link_length_1_plus_link_length_2)
                 )
-                - divisor_a1 - link_length_1_plus_link_length_2
+                - divisor_a1
+                - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         # a2: its effective length is too short
@@ -660,34 +501,36 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
-                0.5*(
+                0.5
+                * (
                     abs(divisor_a2 - link_length_4_plus_link_length_5)
                     + abs(divisor_a2 + link_length_4_plus_link_length_5)
                     + abs(divisor_a2 - link_length_5_minus_link_length_4)
                     + abs(divisor_a2 + link_length_5_minus_link_length_4)
                 )
-                - divisor_a2 - link_length_4_plus_link_length_5
+                - divisor_a2
+                - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
         rod_2_x = x - centre_2_x
         rod_2_y = y - centre_2_y
-        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -696,69 +539,41 @@ class KinType12XY(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
+        highest_a1, highest_a2, lowest_a1, lowest_a2 = k.highest_a1, k.highest_a2, k.lowest_a1, k.lowest_a2
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond_turn("A1", axis_a1, lowest_a1, highest_a1)
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
+        assembly_sign, link_length_1, link_length_2 = k.assembly_sign, k.link_length_1, k.link_length_2
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
-        link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_branch_w = k.part_of_branch_w
-        part_of_foot_fraction = k.part_of_foot_fraction
-        part_of_margin_arms_aligned = k.part_of_margin_arms_aligned
-        part_of_normal_divisor = k.part_of_normal_divisor
+        link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
+        offset_a2, part_of_branch_w, part_of_foot_fraction = k.offset_a2, k.part_of_branch_w, k.part_of_foot_fraction
+        part_of_margin_arms_aligned, part_of_normal_divisor = k.part_of_margin_arms_aligned, k.part_of_normal_divisor
         part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
-        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
-        swap_xy = k.swap_xy
+        part_of_scaled_pivot_rear_y_2, swap_xy = k.part_of_scaled_pivot_rear_y_2, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
+        pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_upper_y = -link_length_1 * cos_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -772,24 +587,27 @@ class KinType12XY(OffsetKinematics):
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)  # distance between the centres
-        one_by_normal_square = 1.0/normal_divisor
+        between_centres = sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0  # distance between the centres
+        one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
         height_square = (
-            0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
-            *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
-            *one_by_normal_square
+            0.25
+            * (link_length_2_plus_radius_2 - between_centres)
+            * (between_centres + link_length_2_minus_radius_2)
+            * (between_centres + link_length_2_plus_radius_2)
+            * (between_centres - link_length_2_minus_radius_2)
+            * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5*(normal_divisor + part_of_foot_fraction)*one_by_normal_square
-        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        foot_fraction = 0.5 * (normal_divisor + part_of_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal
-        foot_y = centre_1_to_2_y*foot_fraction
-        y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = centre_1_x + foot_x - centre_1_to_2_y * height_by_normal
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = centre_1_y + foot_y + centre_1_to_2_x * height_by_normal
         # rod upper: known part of its vector
         if swap_xy:
             span_upper_x = y
@@ -800,29 +618,25 @@ class KinType12XY(OffsetKinematics):
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        margin_stretched_1 = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
+        margin_stretched_1 = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / link_length_2
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
         margin_stretched_2 = (
-            (
-                (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)*cos_a2
-                + (part_of_branch_w*sin_a1 - link_length_2*span_rear_x)*sin_a2
-            )
-            /link_length_2_times_link_length_4
-        )
+            (part_of_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
+            + (part_of_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
+        ) / link_length_2_times_link_length_4
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
         rod_2_x = x - centre_2_x
         rod_2_y = y - centre_2_y
-        margin_arms_aligned = part_of_margin_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+        margin_arms_aligned = part_of_margin_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         return (margin_stretched_1, margin_stretched_2, margin_arms_aligned)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        link_length_1 = k.link_length_1
+        assembly_sign, link_length_1 = k.assembly_sign, k.link_length_1
         link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
@@ -830,110 +644,107 @@ class KinType12XY(OffsetKinematics):
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_3_times_2_by_link_length_2 = k.link_length_3_times_2_by_link_length_2
         link_length_5 = k.link_length_5
-        machine_scale_squared_times_free_angle = k.machine_scale_squared_times_free_angle
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_foot_fraction = k.part_of_foot_fraction
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_rear_x = k.part_of_pivot_rear_x
-        part_of_slope_2_by_a1 = k.part_of_slope_2_by_a1
-        part_of_slope_2_by_x = k.part_of_slope_2_by_x
-        swap_xy = k.swap_xy
-        twice_link_length_1 = k.twice_link_length_1
-        twice_link_length_5 = k.twice_link_length_5
+        machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
+        offset_a2, part_of_foot_fraction = k.offset_a2, k.part_of_foot_fraction
+        part_of_normal_divisor, part_of_pivot_rear_x = k.part_of_normal_divisor, k.part_of_pivot_rear_x
+        part_of_slope_2_by_a1, part_of_slope_2_by_x = k.part_of_slope_2_by_a1, k.part_of_slope_2_by_x
+        swap_xy, twice_link_length_1, twice_link_length_5 = k.swap_xy, k.twice_link_length_1, k.twice_link_length_5
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
+        pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1
+        pivot_upper_y = -link_length_1 * cos_a1
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
         else:
             centre_1_x = pivot_upper_x
             centre_1_y = pivot_upper_y
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        cos_a2_times_link_length_5 = link_length_5*cos_a2
+        cos_a2_times_link_length_5 = link_length_5 * cos_a2
         # rod rear: centre about which it swings
-        pivot_rear_x = part_of_pivot_rear_x*sin_a1 - cos_a2_times_link_length_5
+        pivot_rear_x = part_of_pivot_rear_x * sin_a1 - cos_a2_times_link_length_5
         sin_a2 = sin(a2)
-        link_length_5_times_sin_a2 = link_length_5*sin_a2
-        pivot_rear_y = link_length_5_times_sin_a2 + part_of_pivot_rear_x*cos_a1
-        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x)*link_length_2_by_link_length_3
+        link_length_5_times_sin_a2 = link_length_5 * sin_a2
+        pivot_rear_y = link_length_5_times_sin_a2 + part_of_pivot_rear_x * cos_a1
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x) * link_length_2_by_link_length_3
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
-        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y)*link_length_2_by_link_length_3
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y) * link_length_2_by_link_length_3
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)  # distance between the centres
-        one_by_normal_square = 1.0/normal_divisor
+        between_centres = sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0  # distance between the centres
+        one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
         height_square = (
-            0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
-            *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
-            *one_by_normal_square
+            0.25
+            * (link_length_2_plus_radius_2 - between_centres)
+            * (between_centres + link_length_2_minus_radius_2)
+            * (between_centres + link_length_2_plus_radius_2)
+            * (between_centres - link_length_2_minus_radius_2)
+            * one_by_normal_square
         )
-        twice_link_length_1_times_sin_a1 = twice_link_length_1*sin_a1
-        twice_link_length_1_times_cos_a1 = twice_link_length_1*cos_a1
+        twice_link_length_1_times_sin_a1 = twice_link_length_1 * sin_a1
+        twice_link_length_1_times_cos_a1 = twice_link_length_1 * cos_a1
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5*(normal_divisor + part_of_foot_fraction)*one_by_normal_square
-        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        foot_fraction = 0.5 * (normal_divisor + part_of_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal
-        twice_x = 2.0*x
-        foot_y = centre_1_to_2_y*foot_fraction
-        y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal
-        twice_y = 2.0*y
-        link_length_3_by_link_length_2_times_x = link_length_3_by_link_length_2*x
-        part_of_slope_2_by_y = cos_a2_times_link_length_5 - part_of_slope_2_by_x*sin_a1
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = centre_1_x + foot_x - centre_1_to_2_y * height_by_normal
+        twice_x = 2.0 * x
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = centre_1_y + foot_y + centre_1_to_2_x * height_by_normal
+        twice_y = 2.0 * y
+        link_length_3_by_link_length_2_times_x = link_length_3_by_link_length_2 * x
+        part_of_slope_2_by_y = cos_a2_times_link_length_5 - part_of_slope_2_by_x * sin_a1
         part_of_slope_2_by_x_2 = part_of_slope_2_by_y - link_length_3_by_link_length_2_times_x
-        part_of_slope_2_by_y_2 = link_length_5_times_sin_a2 + part_of_slope_2_by_x*cos_a1
+        part_of_slope_2_by_y_2 = link_length_5_times_sin_a2 + part_of_slope_2_by_x * cos_a1
         part_of_slope_2_by_x_3 = link_length_3_by_link_length_2_times_x + part_of_slope_2_by_y_2
-        link_length_3_by_link_length_2_times_y = link_length_3_by_link_length_2*y
+        link_length_3_by_link_length_2_times_y = link_length_3_by_link_length_2 * y
         part_of_slope_2_by_y_3 = link_length_3_by_link_length_2_times_y + part_of_slope_2_by_y_2
         part_of_slope_2_by_y_4 = part_of_slope_2_by_y - link_length_3_by_link_length_2_times_y
         if swap_xy:
             slope_1_by_x = twice_link_length_1_times_cos_a1 + twice_x
             slope_1_by_y = twice_link_length_1_times_sin_a1 + twice_y
-            slope_1_by_a1 = twice_link_length_1*((y - pivot_upper_x)*cos_a1 + (pivot_upper_y - x)*sin_a1)
-            slope_2_by_a1 = (-part_of_slope_2_by_y_4*cos_a1 - part_of_slope_2_by_x_3*sin_a1)*part_of_slope_2_by_a1
-            slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_x_3*cos_a2 - part_of_slope_2_by_y_4*sin_a2)
+            slope_1_by_a1 = twice_link_length_1 * ((y - pivot_upper_x) * cos_a1 + (pivot_upper_y - x) * sin_a1)
+            slope_2_by_a1 = (-part_of_slope_2_by_y_4 * cos_a1 - part_of_slope_2_by_x_3 * sin_a1) * part_of_slope_2_by_a1
+            slope_2_by_a2 = twice_link_length_5 * (part_of_slope_2_by_x_3 * cos_a2 - part_of_slope_2_by_y_4 * sin_a2)
         else:
             slope_1_by_x = twice_link_length_1_times_sin_a1 + twice_x
             slope_1_by_y = twice_link_length_1_times_cos_a1 + twice_y
-            slope_1_by_a1 = twice_link_length_1*((x - pivot_upper_x)*cos_a1 + (pivot_upper_y - y)*sin_a1)
-            slope_2_by_a1 = (-part_of_slope_2_by_x_2*cos_a1 - part_of_slope_2_by_y_3*sin_a1)*part_of_slope_2_by_a1
-            slope_2_by_a2 = twice_link_length_5*(part_of_slope_2_by_y_3*cos_a2 - part_of_slope_2_by_x_2*sin_a2)
+            slope_1_by_a1 = twice_link_length_1 * ((x - pivot_upper_x) * cos_a1 + (pivot_upper_y - y) * sin_a1)
+            slope_2_by_a1 = (-part_of_slope_2_by_x_2 * cos_a1 - part_of_slope_2_by_y_3 * sin_a1) * part_of_slope_2_by_a1
+            slope_2_by_a2 = twice_link_length_5 * (part_of_slope_2_by_y_3 * cos_a2 - part_of_slope_2_by_x_2 * sin_a2)
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         slope_2_by_x = (
-            -(-part_of_slope_2_by_x_3 if swap_xy else part_of_slope_2_by_x_2)*link_length_3_times_2_by_link_length_2
+            -(-part_of_slope_2_by_x_3 if swap_xy else part_of_slope_2_by_x_2) * link_length_3_times_2_by_link_length_2
         )
         slope_2_by_y = (
-            -(part_of_slope_2_by_y_4 if swap_xy else -part_of_slope_2_by_y_3)*link_length_3_times_2_by_link_length_2
+            -(part_of_slope_2_by_y_4 if swap_xy else -part_of_slope_2_by_y_3) * link_length_3_times_2_by_link_length_2
         )
         # determinant dPhi/dx: zero in a type 2 singularity
-        determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x
+        determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
         # nothing controls the plate
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
-        one_by_determinant = 1.0/determinant
-        slope_2_by_a2_times_one_by_determinant = one_by_determinant*slope_2_by_a2
+        one_by_determinant = 1.0 / determinant
+        slope_2_by_a2_times_one_by_determinant = one_by_determinant * slope_2_by_a2
         return (
             (
-                (slope_1_by_y*slope_2_by_a1 - slope_1_by_a1*slope_2_by_y)*one_by_determinant,
-                slope_1_by_y*slope_2_by_a2_times_one_by_determinant,
+                (slope_1_by_y * slope_2_by_a1 - slope_1_by_a1 * slope_2_by_y) * one_by_determinant,
+                slope_1_by_y * slope_2_by_a2_times_one_by_determinant,
             ),
             (
-                one_by_determinant*(slope_1_by_a1*slope_2_by_x - slope_1_by_x*slope_2_by_a1),
-                -slope_1_by_x*slope_2_by_a2_times_one_by_determinant,
+                one_by_determinant * (slope_1_by_a1 * slope_2_by_x - slope_1_by_x * slope_2_by_a1),
+                -slope_1_by_x * slope_2_by_a2_times_one_by_determinant,
             ),
         )
 
@@ -942,7 +753,7 @@ class KinType12XY(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -951,32 +762,20 @@ class KinType12XY(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
         link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
         link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_along_a2 = k.part_of_along_a2
-        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
+        part_of_along_a2, part_of_scaled_pivot_rear_y = k.part_of_along_a2, k.part_of_scaled_pivot_rear_y
         part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
-        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
+        part_of_type2_arms_aligned, single_a1, single_a2 = k.part_of_type2_arms_aligned, k.single_a1, k.single_a2
         swap_xy = k.swap_xy
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
-        ):
+        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
@@ -992,53 +791,54 @@ class KinType12XY(OffsetKinematics):
             span_upper_x = flange_x
             span_upper_y = flange_y
         # effective length of the arm that a1 turns
-        effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        effective_a1 = sqrt(span_upper_x * span_upper_x + span_upper_y * span_upper_y)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
         # law of cosines for a1: rod upper: 1 - cosine, times a scale
-        one_less_cos_a1 = (
-            (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
+        one_less_cos_a1 = (divisor_a1 + link_length_1_minus_link_length_2) * (
+            divisor_a1 + link_length_1_plus_link_length_2
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (
-            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
+        one_plus_cos_a1 = (link_length_1_plus_link_length_2 - divisor_a1) * (
+            divisor_a1 - link_length_1_minus_link_length_2
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/divisor_of_cos_a1
-        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
+        sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
-        pivot_upper_y = -link_length_1*cos_a1
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - part_of_along_a2*sin_a1
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
-        across_a2 = part_of_along_a2*cos_a1 - span_rear_y
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
+        cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
+        pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
+        pivot_upper_y = -link_length_1 * cos_a1
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        along_a2 = span_rear_x - part_of_along_a2 * sin_a1
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
+        across_a2 = part_of_along_a2 * cos_a1 - span_rear_y
+        # effective length of the arm that a2 turns
+        effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         # law of cosines for a2: rod rear: 1 - cosine, times a scale
-        one_less_cos_a2 = (
-            (divisor_a2 + link_length_4_plus_link_length_5)*(divisor_a2 + link_length_5_minus_link_length_4)
+        one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
+            divisor_a2 + link_length_5_minus_link_length_4
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (
-            (link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 - link_length_5_minus_link_length_4)
+        one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
+            divisor_a2 - link_length_5_minus_link_length_4
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
+        cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
-        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
+        sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
@@ -1054,13 +854,15 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
-                0.5*(
+                0.5
+                * (
                     abs(divisor_a1 - link_length_1_minus_link_length_2)
                     + abs(divisor_a1 + link_length_1_minus_link_length_2)
                     + abs(divisor_a1 - link_length_1_plus_link_length_2)
                     + abs(divisor_a1 + link_length_1_plus_link_length_2)
                 )
-                - divisor_a1 - link_length_1_plus_link_length_2
+                - divisor_a1
+                - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         # a2: its effective length is too short
@@ -1068,34 +870,36 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
-                0.5*(
+                0.5
+                * (
                     abs(divisor_a2 - link_length_4_plus_link_length_5)
                     + abs(divisor_a2 + link_length_4_plus_link_length_5)
                     + abs(divisor_a2 - link_length_5_minus_link_length_4)
                     + abs(divisor_a2 + link_length_5_minus_link_length_4)
                 )
-                - divisor_a2 - link_length_4_plus_link_length_5
+                - divisor_a2
+                - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         rod_1_x = flange_x - centre_1_x
         rod_1_y = flange_y - centre_1_y
         rod_2_x = flange_x - centre_2_x
         rod_2_y = flange_y - centre_2_y
-        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -1104,36 +908,29 @@ class KinType12XY(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
+        assembly_sign, link_length_1, link_length_2 = k.assembly_sign, k.link_length_1, k.link_length_2
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_2_times_link_length_4 = k.link_length_2_times_link_length_4
-        link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_branch_w = k.part_of_branch_w
-        part_of_foot_fraction = k.part_of_foot_fraction
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y
-        part_of_scaled_pivot_rear_y_2 = k.part_of_scaled_pivot_rear_y_2
-        swap_xy = k.swap_xy
+        link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
+        offset_a2, part_of_branch_w, part_of_foot_fraction = k.offset_a2, k.part_of_branch_w, k.part_of_foot_fraction
+        part_of_normal_divisor, part_of_scaled_pivot_rear_y = k.part_of_normal_divisor, k.part_of_scaled_pivot_rear_y
+        part_of_scaled_pivot_rear_y_2, swap_xy = k.part_of_scaled_pivot_rear_y_2, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper: centre about which it swings
+        pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -link_length_1*cos_a1
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_upper_y = -link_length_1 * cos_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y*sin_a1 - part_of_scaled_pivot_rear_y_2*cos_a2
+        scaled_pivot_rear_x = part_of_scaled_pivot_rear_y * sin_a1 - part_of_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y*cos_a1 + part_of_scaled_pivot_rear_y_2*sin_a2
+        scaled_pivot_rear_y = part_of_scaled_pivot_rear_y * cos_a1 + part_of_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_2_x = -scaled_pivot_rear_y
@@ -1147,24 +944,27 @@ class KinType12XY(OffsetKinematics):
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         normal_divisor = normal_square if normal_square > part_of_normal_divisor else 1.0
-        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)  # distance between the centres
-        one_by_normal_square = 1.0/normal_divisor
+        between_centres = sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0  # distance between the centres
+        one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
         height_square = (
-            0.25*(link_length_2_plus_radius_2 - between_centres)*(between_centres + link_length_2_minus_radius_2)
-            *(between_centres + link_length_2_plus_radius_2)*(between_centres - link_length_2_minus_radius_2)
-            *one_by_normal_square
+            0.25
+            * (link_length_2_plus_radius_2 - between_centres)
+            * (between_centres + link_length_2_minus_radius_2)
+            * (between_centres + link_length_2_plus_radius_2)
+            * (between_centres - link_length_2_minus_radius_2)
+            * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5*(normal_divisor + part_of_foot_fraction)*one_by_normal_square
-        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        foot_fraction = 0.5 * (normal_divisor + part_of_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        flange_x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal
-        foot_y = centre_1_to_2_y*foot_fraction
-        flange_y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        flange_x = centre_1_x + foot_x - centre_1_to_2_y * height_by_normal
+        foot_y = centre_1_to_2_y * foot_fraction
+        flange_y = centre_1_y + foot_y + centre_1_to_2_x * height_by_normal
         # rod upper: known part of its vector
         if swap_xy:
             span_upper_x = flange_y
@@ -1175,16 +975,13 @@ class KinType12XY(OffsetKinematics):
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2
-        span_rear_x = -link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
-        span_rear_y = -link_length_3_by_link_length_2*span_upper_y
+        branch_t = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / link_length_2
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
         branch_w = (
-            (
-                (part_of_branch_w*cos_a1 - link_length_2*span_rear_y)*cos_a2
-                + (part_of_branch_w*sin_a1 - link_length_2*span_rear_x)*sin_a2
-            )
-            /link_length_2_times_link_length_4
-        )
+            (part_of_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
+            + (part_of_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
+        ) / link_length_2_times_link_length_4
         return (branch_t, branch_w)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -1198,8 +995,7 @@ class KinType12XY(OffsetKinematics):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

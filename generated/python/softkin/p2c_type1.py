@@ -32,73 +32,66 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.p2c_type1 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    inner_arm: float
-    outer_arm: float
-    displacement: float
-    tcp_displacement: float
-    offset_a1: float
-    offset_a2: float
-    tcp_above: bool
-    min_type2_margin: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    single_a1: bool
-    mid_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    single_a2: bool
-    mid_a2: float
-    machine_scale: float
-    assembly_sign: float
-    part_of_normal_divisor: float
-    twice_outer_arm: float
-    outer_arm_squared_times_rounding: float
-    tcp_displacement_minus_displacement: float
-    machine_scale_times_plane: float
-    inner_arm_times_shortest_link: float
-    inner_arm_minus_outer_arm: float
-    inner_arm_plus_outer_arm: float
-    assembly_sign_by_outer_arm_squared: float
-    outer_arm_squared: float
-    machine_scale_squared_times_free_angle: float
-    twice_inner_arm: float
-    part_of_slope_1_by_x: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        inner_arm, outer_arm, displacement = p["inner_arm"], p["outer_arm"], p["displacement"]
+        tcp_displacement, offset_a1, offset_a2 = p["tcp_displacement"], p["offset_a1"], p["offset_a2"]
+        tcp_above, min_type2_margin = bool(p["tcp_above"]), p["min_type2_margin"]
+        if not (abs(displacement - tcp_displacement) < inner_arm + outer_arm):
+            raise machine._refusal(
+                "the arms must be able to reach the plate", "inner_arm", "outer_arm", "displacement", "tcp_displacement"
+            )
+        self.lowest_a1, self.highest_a1, self.single_a1, self.mid_a1 = machine._window("a1")
+        self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
+        # characteristic length of the machine
+        machine_scale = displacement + inner_arm + outer_arm + tcp_displacement
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = 1.0 if tcp_above else -1.0
+        part_of_normal_divisor = 1e-22 * outer_arm * outer_arm
+        twice_outer_arm = 2.0 * outer_arm
+        outer_arm_squared_times_rounding = 1e-12 * outer_arm * outer_arm
+        tcp_displacement_minus_displacement = tcp_displacement - displacement
+        machine_scale_times_plane = 1e-6 * machine_scale
+        inner_arm_times_shortest_link = 1e-9 * inner_arm
+        inner_arm_minus_outer_arm = inner_arm - outer_arm
+        inner_arm_plus_outer_arm = inner_arm + outer_arm
+        assembly_sign_by_outer_arm_squared = assembly_sign / (outer_arm * outer_arm)
+        outer_arm_squared = outer_arm * outer_arm
+        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        twice_inner_arm = 2.0 * inner_arm
+        part_of_slope_1_by_x = 2.0 * tcp_displacement - 2.0 * displacement
+        self.inner_arm, self.outer_arm, self.displacement = inner_arm, outer_arm, displacement
+        self.tcp_displacement, self.offset_a1, self.offset_a2 = tcp_displacement, offset_a1, offset_a2
+        self.min_type2_margin, self.machine_scale, self.assembly_sign = min_type2_margin, machine_scale, assembly_sign
+        self.part_of_normal_divisor, self.twice_outer_arm = part_of_normal_divisor, twice_outer_arm
+        self.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding
+        self.tcp_displacement_minus_displacement = tcp_displacement_minus_displacement
+        self.machine_scale_times_plane = machine_scale_times_plane
+        self.inner_arm_times_shortest_link = inner_arm_times_shortest_link
+        self.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm
+        self.inner_arm_plus_outer_arm = inner_arm_plus_outer_arm
+        self.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared
+        self.outer_arm_squared = outer_arm_squared
+        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
+        self.twice_inner_arm, self.part_of_slope_1_by_x = twice_inner_arm, part_of_slope_1_by_x
 
 
 class P2CType1(OffsetKinematics):
@@ -107,73 +100,41 @@ class P2CType1(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type1"
     AXES = (
         Axis(
-            name="A1", kind="rotary", unit="deg",
-            meaning="Arm on the side of -X, from horizontal outward; positive is down", multi_turn=True,
+            name="A1",
+            kind="rotary",
+            unit="deg",
+            meaning="Arm on the side of -X, from horizontal outward; positive is down",
+            multi_turn=True,
         ),
         Axis(
-            name="A2", kind="rotary", unit="deg",
-            meaning="Arm on the side of +X, from horizontal outward; positive is down", multi_turn=True,
+            name="A2",
+            kind="rotary",
+            unit="deg",
+            meaning="Arm on the side of +X, from horizontal outward; positive is down",
+            multi_turn=True,
         ),
     )
     PARAMETERS = (
-        Parameter(
-            name="inner_arm", kind="length", unit="u", meaning="Length of the inner arms", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
+        Parameter.of("length", "inner_arm", "Length of the inner arms"),
+        Parameter.of("length", "outer_arm", "Length of the outer arms"),
+        Parameter.of("distance", "displacement", "Centre to the motor axes", low=0.0),
+        Parameter.of("distance", "tcp_displacement", "Centre of the plate to its rod joints", low=0.0),
+        Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "tcp_above", "assembly mode: above instead of below"),
+        Parameter.of(
+            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
         ),
-        Parameter(
-            name="outer_arm", kind="length", unit="u", meaning="Length of the outer arms", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="displacement", kind="distance", unit="u", meaning="Centre to the motor axes", low=0.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_displacement", kind="distance", unit="u", meaning="Centre of the plate to its rod joints",
-            low=0.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a1", kind="angle", unit="deg", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="angle", unit="deg", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="angle", unit="deg", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="angle", unit="deg", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="angle", unit="deg", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="angle", unit="deg", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_above", kind="flag", unit="", meaning="assembly mode: above instead of below", low=0.0,
-            high=1.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
-            low_is_open=False, default=0.001,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="knee_1", kind="branch", branches=("outward", "inward"), default=1),
@@ -192,9 +153,20 @@ class P2CType1(OffsetKinematics):
     DISTANCE_AXES = (0, 1)
 
     def __init__(
-        self, *, inner_arm: float, outer_arm: float, displacement: float = 0.0, tcp_displacement: float = 0.0,
-        offset_a1: float = 0.0, offset_a2: float = 0.0, lower_a1: float = 0.0, upper_a1: float = 0.0,
-        lower_a2: float = 0.0, upper_a2: float = 0.0, tcp_above: bool = False, min_type2_margin: float = 0.001,
+        self,
+        *,
+        inner_arm: float,
+        outer_arm: float,
+        displacement: float = 0.0,
+        tcp_displacement: float = 0.0,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        tcp_above: bool = False,
+        min_type2_margin: float = 0.001,
         check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
@@ -213,201 +185,100 @@ class P2CType1(OffsetKinematics):
         min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            inner_arm, outer_arm, displacement, tcp_displacement, offset_a1, offset_a2, lower_a1, upper_a1, lower_a2,
-            upper_a2, tcp_above, min_type2_margin, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(lowest_a1=-1e12, lowest_a2=-1e12, highest_a1=1e12, highest_a2=1e12)
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, inner_arm: float, outer_arm: float, displacement: float, tcp_displacement: float, offset_a1: float,
-        offset_a2: float, lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float, tcp_above: bool,
-        min_type2_margin: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (inner_arm <= 1e9 and inner_arm > 0.0):
-            raise self._refusal("inner_arm: Length of the inner arms", inner_arm=inner_arm)
-        if not (outer_arm <= 1e9 and outer_arm > 0.0):
-            raise self._refusal("outer_arm: Length of the outer arms", outer_arm=outer_arm)
-        if not (displacement >= 0.0 and displacement <= 1e9):
-            raise self._refusal("displacement: Centre to the motor axes", displacement=displacement)
-        if not (tcp_displacement >= 0.0 and tcp_displacement <= 1e9):
-            raise self._refusal(
-                "tcp_displacement: Centre of the plate to its rod joints", tcp_displacement=tcp_displacement,
-            )
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
-            raise self._refusal(
-                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
-                min_type2_margin=min_type2_margin,
-            )
-        if not (abs(displacement - tcp_displacement) < inner_arm + outer_arm):
-            raise self._refusal(
-                "the arms must be able to reach the plate", inner_arm=inner_arm, outer_arm=outer_arm,
-                displacement=displacement, tcp_displacement=tcp_displacement,
-            )
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # at most one turn is inside the limits
-        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-        mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # at most one turn is inside the limits
-        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-        mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
-        # characteristic length of the machine
-        machine_scale = displacement + inner_arm + outer_arm + tcp_displacement
-        # assembly mode of this machine: the sign of the determinant of its rods
-        assembly_sign = 1.0 if tcp_above else -1.0
-        part_of_normal_divisor = 1e-22*outer_arm*outer_arm
-        twice_outer_arm = 2.0*outer_arm
-        outer_arm_squared_times_rounding = 1e-12*outer_arm*outer_arm
-        tcp_displacement_minus_displacement = tcp_displacement - displacement
-        machine_scale_times_plane = 1e-6*machine_scale
-        inner_arm_times_shortest_link = 1e-9*inner_arm
-        inner_arm_minus_outer_arm = inner_arm - outer_arm
-        inner_arm_plus_outer_arm = inner_arm + outer_arm
-        assembly_sign_by_outer_arm_squared = assembly_sign/(outer_arm*outer_arm)
-        outer_arm_squared = outer_arm*outer_arm
-        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
-        twice_inner_arm = 2.0*inner_arm
-        part_of_slope_1_by_x = 2.0*tcp_displacement - 2.0*displacement
-        return Constants(
-            inner_arm=inner_arm, outer_arm=outer_arm, displacement=displacement, tcp_displacement=tcp_displacement,
-            offset_a1=offset_a1, offset_a2=offset_a2, tcp_above=tcp_above, min_type2_margin=min_type2_margin,
-            check_limits=check_limits, lower_a1=effective_lower_a1, upper_a1=effective_upper_a1,
-            unlimited_a1=unlimited_a1, lowest_a1=lowest_a1, highest_a1=highest_a1, single_a1=single_a1, mid_a1=mid_a1,
-            lower_a2=effective_lower_a2, upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2,
-            highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, machine_scale=machine_scale,
-            assembly_sign=assembly_sign, part_of_normal_divisor=part_of_normal_divisor,
-            twice_outer_arm=twice_outer_arm, outer_arm_squared_times_rounding=outer_arm_squared_times_rounding,
-            tcp_displacement_minus_displacement=tcp_displacement_minus_displacement,
-            machine_scale_times_plane=machine_scale_times_plane,
-            inner_arm_times_shortest_link=inner_arm_times_shortest_link,
-            inner_arm_minus_outer_arm=inner_arm_minus_outer_arm, inner_arm_plus_outer_arm=inner_arm_plus_outer_arm,
-            assembly_sign_by_outer_arm_squared=assembly_sign_by_outer_arm_squared,
-            outer_arm_squared=outer_arm_squared,
-            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
-            twice_inner_arm=twice_inner_arm, part_of_slope_1_by_x=part_of_slope_1_by_x,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        inner_arm = k.inner_arm
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        outer_arm = k.outer_arm
-        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
+        assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
+        outer_arm, outer_arm_squared_times_rounding = k.outer_arm, k.outer_arm_squared_times_rounding
         part_of_normal_divisor = k.part_of_normal_divisor
-        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        twice_outer_arm = k.twice_outer_arm
+        tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1
+        pivot_1_y = -inner_arm * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2
+        pivot_2_y = -inner_arm * sin_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
         height_square = (
-            0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
-            *between_centres/normal_square
+            0.25
+            * (twice_outer_arm - between_centres)
+            * (between_centres + twice_outer_arm)
+            * between_centres
+            * between_centres
+            / normal_square
         )
         # the rods do not meet
         if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
-        foot_x = 0.5*centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
-        height_by_normal = root(height_square/normal_square)*assembly_sign  # height, as a multiple of the normal
-        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
-        foot_y = 0.5*centre_1_to_2_y
-        y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal
+        foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square / normal_square) * assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        foot_y = 0.5 * centre_1_to_2_y
+        y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
-        branch_knee_1 = (span_1_x*sin_a1 - y*cos_a1)/outer_arm
+        branch_knee_1 = (span_1_x * sin_a1 - y * cos_a1) / outer_arm
         span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
-        branch_knee_2 = (-y*cos_a2 - span_2_x*sin_a2)/outer_arm
+        branch_knee_2 = (-y * cos_a2 - span_2_x * sin_a2) / outer_arm
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_knee_1, branch_knee_2))
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        inner_arm = k.inner_arm
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        inner_arm, offset_a1, offset_a2 = k.inner_arm, k.offset_a1, k.offset_a2
         outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
         part_of_normal_divisor = k.part_of_normal_divisor
-        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        twice_outer_arm = k.twice_outer_arm
+        tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1
+        pivot_1_y = -inner_arm * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2
+        pivot_2_y = -inner_arm * sin_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
         height_square = (
-            0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
-            *between_centres/normal_square
+            0.25
+            * (twice_outer_arm - between_centres)
+            * (between_centres + twice_outer_arm)
+            * between_centres
+            * between_centres
+            / normal_square
         )
         # the rods do not meet
         if not (height_square >= -outer_arm_squared_times_rounding):
@@ -415,7 +286,7 @@ class P2CType1(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -423,104 +294,98 @@ class P2CType1(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        assembly_sign_by_outer_arm_squared = k.assembly_sign_by_outer_arm_squared
-        inner_arm = k.inner_arm
-        inner_arm_minus_outer_arm = k.inner_arm_minus_outer_arm
-        inner_arm_plus_outer_arm = k.inner_arm_plus_outer_arm
+        assembly_sign_by_outer_arm_squared, inner_arm = k.assembly_sign_by_outer_arm_squared, k.inner_arm
+        inner_arm_minus_outer_arm, inner_arm_plus_outer_arm = k.inner_arm_minus_outer_arm, k.inner_arm_plus_outer_arm
         inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
-            and -1e9 <= ref_a2 <= 1e9
-        ):
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
+        single_a2, tcp_displacement_minus_displacement = k.single_a2, k.tcp_displacement_minus_displacement
+        if not are_usable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
-        y_squared = y*y
-        effective_a1 = root(y_squared + span_1_x*span_1_x)  # effective length of the arm that a1 turns
+        y_squared = y * y
+        effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         # law of cosines for a1: rod 1: 1 - cosine, times a scale
-        one_less_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm)*(effective_a1 + inner_arm_plus_outer_arm)
+        one_less_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm) * (effective_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1)*(effective_a1 - inner_arm_minus_outer_arm)
+        one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1) * (effective_a1 - inner_arm_minus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
-                0.5*abs(effective_a1 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_minus_outer_arm)
-                + 0.5*abs(effective_a1 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_plus_outer_arm)
-                - effective_a1 - inner_arm_plus_outer_arm
+                0.5 * abs(effective_a1 - inner_arm_minus_outer_arm)
+                + 0.5 * abs(effective_a1 + inner_arm_minus_outer_arm)
+                + 0.5 * abs(effective_a1 - inner_arm_plus_outer_arm)
+                + 0.5 * abs(effective_a1 + inner_arm_plus_outer_arm)
+                - effective_a1
+                - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
-        effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length of the arm that a2 turns
+        effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         # law of cosines for a2: rod 2: 1 - cosine, times a scale
-        one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2)*(effective_a2 - inner_arm_minus_outer_arm)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2) * (effective_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)*(effective_a2 + inner_arm_plus_outer_arm)
+        one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm) * (effective_a2 + inner_arm_plus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
-                0.5*abs(effective_a2 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_minus_outer_arm)
-                + 0.5*abs(effective_a2 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_plus_outer_arm)
-                - effective_a2 - inner_arm_plus_outer_arm
+                0.5 * abs(effective_a2 - inner_arm_minus_outer_arm)
+                + 0.5 * abs(effective_a2 + inner_arm_minus_outer_arm)
+                + 0.5 * abs(effective_a2 - inner_arm_plus_outer_arm)
+                + 0.5 * abs(effective_a2 + inner_arm_plus_outer_arm)
+                - effective_a2
+                - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/effective_a1
-        rod_1_x = span_1_x + inner_arm*cos_a1
-        sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
-        pivot_1_y = -inner_arm*sin_a1
+        cos_a1 = (span_1_x * cos_swing_a1 - y * sin_swing_a1) / effective_a1
+        rod_1_x = span_1_x + inner_arm * cos_a1
+        sin_a1 = (y * cos_swing_a1 + span_1_x * sin_swing_a1) / effective_a1
+        pivot_1_y = -inner_arm * sin_a1
         rod_1_y = y - pivot_1_y
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (span_2_x*cos_swing_a2 + y*sin_swing_a2)/effective_a2
-        rod_2_x = span_2_x - inner_arm*cos_a2
-        sin_a2 = (span_2_x*sin_swing_a2 - y*cos_swing_a2)/effective_a2
-        pivot_2_y = -inner_arm*sin_a2
+        cos_a2 = (span_2_x * cos_swing_a2 + y * sin_swing_a2) / effective_a2
+        rod_2_x = span_2_x - inner_arm * cos_a2
+        sin_a2 = (span_2_x * sin_swing_a2 - y * cos_swing_a2) / effective_a2
+        pivot_2_y = -inner_arm * sin_a2
         rod_2_y = y - pivot_2_y
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -529,160 +394,139 @@ class P2CType1(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
+        highest_a1, highest_a2, lowest_a1, lowest_a2 = k.highest_a1, k.highest_a2, k.lowest_a1, k.lowest_a2
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond_turn("A1", axis_a1, lowest_a1, highest_a1)
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        inner_arm = k.inner_arm
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        outer_arm = k.outer_arm
-        outer_arm_squared = k.outer_arm_squared
+        assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
+        outer_arm, outer_arm_squared = k.outer_arm, k.outer_arm_squared
         outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
         part_of_normal_divisor = k.part_of_normal_divisor
-        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        twice_outer_arm = k.twice_outer_arm
+        tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1
+        pivot_1_y = -inner_arm * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2
+        pivot_2_y = -inner_arm * sin_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
         height_square = (
-            0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
-            *between_centres/normal_square
+            0.25
+            * (twice_outer_arm - between_centres)
+            * (between_centres + twice_outer_arm)
+            * between_centres
+            * between_centres
+            / normal_square
         )
         # the rods do not meet
         if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
-        foot_y = 0.5*centre_1_to_2_y
-        height_by_normal = root(height_square/normal_square)*assembly_sign  # height, as a multiple of the normal
-        y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal
-        foot_x = 0.5*centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
-        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
+        foot_y = 0.5 * centre_1_to_2_y
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square / normal_square) * assembly_sign
+        y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
+        foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
-        margin_stretched_1 = (span_1_x*sin_a1 - y*cos_a1)/outer_arm
+        margin_stretched_1 = (span_1_x * sin_a1 - y * cos_a1) / outer_arm
         span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
-        margin_stretched_2 = (-y*cos_a2 - span_2_x*sin_a2)/outer_arm
+        margin_stretched_2 = (-y * cos_a2 - span_2_x * sin_a2) / outer_arm
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        margin_arms_aligned = (rod_1_x*rod_2_y - rod_1_y*rod_2_x)/outer_arm_squared
+        margin_arms_aligned = (rod_1_x * rod_2_y - rod_1_y * rod_2_x) / outer_arm_squared
         return (margin_stretched_1, margin_stretched_2, margin_arms_aligned)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        inner_arm = k.inner_arm
-        machine_scale_squared_times_free_angle = k.machine_scale_squared_times_free_angle
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_slope_1_by_x = k.part_of_slope_1_by_x
-        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        twice_inner_arm = k.twice_inner_arm
+        assembly_sign, inner_arm = k.assembly_sign, k.inner_arm
+        machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
+        offset_a2, outer_arm_squared_times_rounding = k.offset_a2, k.outer_arm_squared_times_rounding
+        part_of_normal_divisor, part_of_slope_1_by_x = k.part_of_normal_divisor, k.part_of_slope_1_by_x
+        tcp_displacement_minus_displacement, twice_inner_arm = k.tcp_displacement_minus_displacement, k.twice_inner_arm
         twice_outer_arm = k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1
+        pivot_1_y = -inner_arm * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2
+        pivot_2_y = -inner_arm * sin_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
         height_square = (
-            0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
-            *between_centres/normal_square
+            0.25
+            * (twice_outer_arm - between_centres)
+            * (between_centres + twice_outer_arm)
+            * between_centres
+            * between_centres
+            / normal_square
         )
         # the rods do not meet
         if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
-        foot_x = 0.5*centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
-        height_by_normal = root(height_square/normal_square)*assembly_sign  # height, as a multiple of the normal
-        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
-        twice_x = 2.0*x
-        slope_1_by_x = twice_x + twice_inner_arm*cos_a1 - part_of_slope_1_by_x
-        foot_y = 0.5*centre_1_to_2_y
-        y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal
-        twice_y = 2.0*y
-        slope_1_by_y = twice_y + twice_inner_arm*sin_a1
-        slope_2_by_x = part_of_slope_1_by_x + twice_x - twice_inner_arm*cos_a2
-        slope_2_by_y = twice_y + twice_inner_arm*sin_a2
+        foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square / normal_square) * assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        twice_x = 2.0 * x
+        slope_1_by_x = twice_x + twice_inner_arm * cos_a1 - part_of_slope_1_by_x
+        foot_y = 0.5 * centre_1_to_2_y
+        y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
+        twice_y = 2.0 * y
+        slope_1_by_y = twice_y + twice_inner_arm * sin_a1
+        slope_2_by_x = part_of_slope_1_by_x + twice_x - twice_inner_arm * cos_a2
+        slope_2_by_y = twice_y + twice_inner_arm * sin_a2
         # determinant dPhi/dx: zero in a type 2 singularity
-        determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x
+        determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
         # nothing controls the plate
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
-        slope_1_by_a1 = twice_inner_arm*((y - pivot_1_y)*cos_a1 + (pivot_1_x - x)*sin_a1)
-        slope_1_by_a1_by_determinant = slope_1_by_a1/determinant
-        slope_2_by_a2 = twice_inner_arm*((y - pivot_2_y)*cos_a2 + (x - pivot_2_x)*sin_a2)
-        slope_2_by_a2_by_determinant = slope_2_by_a2/determinant
+        slope_1_by_a1 = twice_inner_arm * ((y - pivot_1_y) * cos_a1 + (pivot_1_x - x) * sin_a1)
+        slope_1_by_a1_by_determinant = slope_1_by_a1 / determinant
+        slope_2_by_a2 = twice_inner_arm * ((y - pivot_2_y) * cos_a2 + (x - pivot_2_x) * sin_a2)
+        slope_2_by_a2_by_determinant = slope_2_by_a2 / determinant
         return (
-            (-slope_1_by_a1_by_determinant*slope_2_by_y, slope_1_by_y*slope_2_by_a2_by_determinant),
-            (slope_1_by_a1_by_determinant*slope_2_by_x, -slope_1_by_x*slope_2_by_a2_by_determinant),
+            (-slope_1_by_a1_by_determinant * slope_2_by_y, slope_1_by_y * slope_2_by_a2_by_determinant),
+            (slope_1_by_a1_by_determinant * slope_2_by_x, -slope_1_by_x * slope_2_by_a2_by_determinant),
         )
 
     def _image(self) -> Image | Status:
@@ -690,7 +534,7 @@ class P2CType1(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -699,25 +543,13 @@ class P2CType1(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        assembly_sign_by_outer_arm_squared = k.assembly_sign_by_outer_arm_squared
-        inner_arm = k.inner_arm
-        inner_arm_minus_outer_arm = k.inner_arm_minus_outer_arm
-        inner_arm_plus_outer_arm = k.inner_arm_plus_outer_arm
+        assembly_sign_by_outer_arm_squared, inner_arm = k.assembly_sign_by_outer_arm_squared, k.inner_arm
+        inner_arm_minus_outer_arm, inner_arm_plus_outer_arm = k.inner_arm_minus_outer_arm, k.inner_arm_plus_outer_arm
         inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
-        ):
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
+        single_a2, tcp_displacement_minus_displacement = k.single_a2, k.tcp_displacement_minus_displacement
+        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
@@ -726,79 +558,85 @@ class P2CType1(OffsetKinematics):
         flange_x = x - point_x  # position of the flange: the point less its offset
         span_1_x = flange_x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
         flange_y = y - point_y  # position of the flange: the point less its offset
-        flange_y_squared = flange_y*flange_y
-        effective_a1 = root(flange_y_squared + span_1_x*span_1_x)  # effective length of the arm that a1 turns
+        flange_y_squared = flange_y * flange_y
+        effective_a1 = root(flange_y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         # law of cosines for a1: rod 1: 1 - cosine, times a scale
-        one_less_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm)*(effective_a1 + inner_arm_plus_outer_arm)
+        one_less_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm) * (effective_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1)*(effective_a1 - inner_arm_minus_outer_arm)
+        one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1) * (effective_a1 - inner_arm_minus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = (
-                0.5*abs(effective_a1 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_minus_outer_arm)
-                + 0.5*abs(effective_a1 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a1 + inner_arm_plus_outer_arm)
-                - effective_a1 - inner_arm_plus_outer_arm
+                0.5 * abs(effective_a1 - inner_arm_minus_outer_arm)
+                + 0.5 * abs(effective_a1 + inner_arm_minus_outer_arm)
+                + 0.5 * abs(effective_a1 - inner_arm_plus_outer_arm)
+                + 0.5 * abs(effective_a1 + inner_arm_plus_outer_arm)
+                - effective_a1
+                - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = flange_x + tcp_displacement_minus_displacement  # rod 2: known part of its vector
-        effective_a2 = root(flange_y_squared + span_2_x*span_2_x)  # effective length of the arm that a2 turns
+        effective_a2 = root(flange_y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         # law of cosines for a2: rod 2: 1 - cosine, times a scale
-        one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2)*(effective_a2 - inner_arm_minus_outer_arm)
+        one_less_cos_a2 = (inner_arm_plus_outer_arm - effective_a2) * (effective_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)*(effective_a2 + inner_arm_plus_outer_arm)
+        one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm) * (effective_a2 + inner_arm_plus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
-                0.5*abs(effective_a2 - inner_arm_minus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_minus_outer_arm)
-                + 0.5*abs(effective_a2 - inner_arm_plus_outer_arm) + 0.5*abs(effective_a2 + inner_arm_plus_outer_arm)
-                - effective_a2 - inner_arm_plus_outer_arm
+                0.5 * abs(effective_a2 - inner_arm_minus_outer_arm)
+                + 0.5 * abs(effective_a2 + inner_arm_minus_outer_arm)
+                + 0.5 * abs(effective_a2 - inner_arm_plus_outer_arm)
+                + 0.5 * abs(effective_a2 + inner_arm_plus_outer_arm)
+                - effective_a2
+                - inner_arm_plus_outer_arm
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a1 = (span_1_x*cos_swing_a1 - flange_y*sin_swing_a1)/effective_a1
-        rod_1_x = span_1_x + inner_arm*cos_a1
-        sin_a1 = (flange_y*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
-        pivot_1_y = -inner_arm*sin_a1
+        cos_a1 = (span_1_x * cos_swing_a1 - flange_y * sin_swing_a1) / effective_a1
+        rod_1_x = span_1_x + inner_arm * cos_a1
+        sin_a1 = (flange_y * cos_swing_a1 + span_1_x * sin_swing_a1) / effective_a1
+        pivot_1_y = -inner_arm * sin_a1
         rod_1_y = flange_y - pivot_1_y
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (span_2_x*cos_swing_a2 + flange_y*sin_swing_a2)/effective_a2
-        rod_2_x = span_2_x - inner_arm*cos_a2
-        sin_a2 = (span_2_x*sin_swing_a2 - flange_y*cos_swing_a2)/effective_a2
-        pivot_2_y = -inner_arm*sin_a2
+        cos_a2 = (span_2_x * cos_swing_a2 + flange_y * sin_swing_a2) / effective_a2
+        rod_2_x = span_2_x - inner_arm * cos_a2
+        sin_a2 = (span_2_x * sin_swing_a2 - flange_y * cos_swing_a2) / effective_a2
+        pivot_2_y = -inner_arm * sin_a2
         rod_2_y = flange_y - pivot_2_y
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
             )
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -807,53 +645,53 @@ class P2CType1(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        inner_arm = k.inner_arm
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        outer_arm = k.outer_arm
-        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
+        assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
+        outer_arm, outer_arm_squared_times_rounding = k.outer_arm, k.outer_arm_squared_times_rounding
         part_of_normal_divisor = k.part_of_normal_divisor
-        tcp_displacement_minus_displacement = k.tcp_displacement_minus_displacement
-        twice_outer_arm = k.twice_outer_arm
+        tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm*cos_a1  # rod 1: centre about which it swings
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        pivot_1_x = tcp_displacement_minus_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm*cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        pivot_2_x = inner_arm * cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -inner_arm*sin_a1
+        pivot_1_y = -inner_arm * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -inner_arm*sin_a2
+        pivot_2_y = -inner_arm * sin_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
         height_square = (
-            0.25*(twice_outer_arm - between_centres)*(between_centres + twice_outer_arm)*between_centres
-            *between_centres/normal_square
+            0.25
+            * (twice_outer_arm - between_centres)
+            * (between_centres + twice_outer_arm)
+            * between_centres
+            * between_centres
+            / normal_square
         )
         # the rods do not meet
         if not (height_square >= -outer_arm_squared_times_rounding):
             return Status.IMPOSSIBLE
-        foot_y = 0.5*centre_1_to_2_y
-        height_by_normal = root(height_square/normal_square)*assembly_sign  # height, as a multiple of the normal
-        flange_y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal
-        foot_x = 0.5*centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
-        flange_x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
+        foot_y = 0.5 * centre_1_to_2_y
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square / normal_square) * assembly_sign
+        flange_y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
+        foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        flange_x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         span_1_x = flange_x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
-        branch_knee_1 = (span_1_x*sin_a1 - flange_y*cos_a1)/outer_arm
+        branch_knee_1 = (span_1_x * sin_a1 - flange_y * cos_a1) / outer_arm
         span_2_x = flange_x + tcp_displacement_minus_displacement  # rod 2: known part of its vector
-        branch_knee_2 = (-flange_y*cos_a2 - span_2_x*sin_a2)/outer_arm
+        branch_knee_2 = (-flange_y * cos_a2 - span_2_x * sin_a2) / outer_arm
         return (branch_knee_1, branch_knee_2)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -867,8 +705,7 @@ class P2CType1(OffsetKinematics):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -30,71 +30,71 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from softkin._configuration import Criterion
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import root, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import are_usable, root, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.p2x_type1 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    arm_length_1: float
-    arm_length_2: float
-    rail_y_1: float
-    rail_y_2: float
-    tcp_offset_1: float
-    tcp_offset_2: float
-    offset_a1: float
-    offset_a2: float
-    tcp_above: bool
-    min_type2_margin: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    machine_scale: float
-    tie: float
-    centre_1_to_2_y: float
-    assembly_sign: float
-    centre_1_to_2_y_squared: float
-    part_of_normal_divisor: float
-    arm_length_1_squared_times_rounding: float
-    arm_length_1_plus_arm_length_2: float
-    arm_length_1_minus_arm_length_2: float
-    part_of_foot_fraction: float
-    machine_scale_times_plane: float
-    arm_length_2_squared_times_rounding: float
-    part_of_type2_arms_aligned: float
-    arm_length_1_times_arm_length_2: float
-    machine_scale_squared_times_free_angle: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        arm_length_1, arm_length_2, rail_y_1 = p["arm_length_1"], p["arm_length_2"], p["rail_y_1"]
+        rail_y_2, tcp_offset_1, tcp_offset_2 = p["rail_y_2"], p["tcp_offset_1"], p["tcp_offset_2"]
+        offset_a1, offset_a2, tcp_above = p["offset_a1"], p["offset_a2"], bool(p["tcp_above"])
+        min_type2_margin = p["min_type2_margin"]
+        if not (abs(rail_y_1 - rail_y_2) < arm_length_1 + arm_length_2):
+            raise machine._refusal(
+                "the arms must be able to meet between the rails",
+                "arm_length_1",
+                "arm_length_2",
+                "rail_y_1",
+                "rail_y_2",
+            )
+        self.lowest_a1, self.highest_a1, *_ = machine._window("a1")
+        self.lowest_a2, self.highest_a2, *_ = machine._window("a2")
+        machine_scale = arm_length_1 + arm_length_2  # characteristic length of the machine
+        tie = 1e-12 * machine_scale * machine_scale  # squared distances closer than this are equal
+        centre_1_to_2_y = rail_y_2 - rail_y_1
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = 1.0 if tcp_above else -1.0
+        centre_1_to_2_y_squared = centre_1_to_2_y * centre_1_to_2_y
+        part_of_normal_divisor = 1e-22 * arm_length_1 * arm_length_1
+        arm_length_1_squared_times_rounding = 1e-12 * arm_length_1 * arm_length_1
+        arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
+        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
+        part_of_foot_fraction = arm_length_1_minus_arm_length_2 * arm_length_1_plus_arm_length_2
+        machine_scale_times_plane = 1e-6 * machine_scale
+        arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
+        part_of_type2_arms_aligned = assembly_sign / (arm_length_1 * arm_length_2)
+        arm_length_1_times_arm_length_2 = arm_length_1 * arm_length_2
+        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        self.arm_length_1, self.arm_length_2, self.rail_y_1 = arm_length_1, arm_length_2, rail_y_1
+        self.rail_y_2, self.tcp_offset_1, self.tcp_offset_2 = rail_y_2, tcp_offset_1, tcp_offset_2
+        self.offset_a1, self.offset_a2, self.min_type2_margin = offset_a1, offset_a2, min_type2_margin
+        self.machine_scale, self.tie, self.centre_1_to_2_y = machine_scale, tie, centre_1_to_2_y
+        self.assembly_sign, self.centre_1_to_2_y_squared = assembly_sign, centre_1_to_2_y_squared
+        self.part_of_normal_divisor = part_of_normal_divisor
+        self.arm_length_1_squared_times_rounding = arm_length_1_squared_times_rounding
+        self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
+        self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
+        self.part_of_foot_fraction, self.machine_scale_times_plane = part_of_foot_fraction, machine_scale_times_plane
+        self.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding
+        self.part_of_type2_arms_aligned = part_of_type2_arms_aligned
+        self.arm_length_1_times_arm_length_2 = arm_length_1_times_arm_length_2
+        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
 
 
 class P2XType1(OffsetKinematics):
@@ -103,7 +103,7 @@ class P2XType1(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2X_Type1"
     AXES = (
@@ -111,69 +111,23 @@ class P2XType1(OffsetKinematics):
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="arm_length_1", kind="length", unit="u", meaning="Length of arm 1", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
+        Parameter.of("length", "arm_length_1", "Length of arm 1"),
+        Parameter.of("length", "arm_length_2", "Length of arm 2"),
+        Parameter.of("distance", "rail_y_1", "Y of rail 1"),
+        Parameter.of("distance", "rail_y_2", "Y of rail 2"),
+        Parameter.of("distance", "tcp_offset_1", "Plate joint of arm 1, to the left of the centre"),
+        Parameter.of("distance", "tcp_offset_2", "Plate joint of arm 2, to the right of the centre"),
+        Parameter.of("distance", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "tcp_above", "assembly mode: above instead of below"),
+        Parameter.of(
+            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
         ),
-        Parameter(
-            name="arm_length_2", kind="length", unit="u", meaning="Length of arm 2", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="rail_y_1", kind="distance", unit="u", meaning="Y of rail 1", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="rail_y_2", kind="distance", unit="u", meaning="Y of rail 2", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_offset_1", kind="distance", unit="u",
-            meaning="Plate joint of arm 1, to the left of the centre", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_offset_2", kind="distance", unit="u",
-            meaning="Plate joint of arm 2, to the right of the centre", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a1", kind="distance", unit="u", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="distance", unit="u", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="distance", unit="u", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="distance", unit="u", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="distance", unit="u", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="distance", unit="u", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_above", kind="flag", unit="", meaning="assembly mode: above instead of below", low=0.0,
-            high=1.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
-            low_is_open=False, default=0.001,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="carriage_1", kind="branch", branches=("left", "right"), default=1),
@@ -190,10 +144,23 @@ class P2XType1(OffsetKinematics):
     DISTANCE_AXES = (0, 1)
 
     def __init__(
-        self, *, arm_length_1: float, arm_length_2: float, rail_y_1: float = 0.0, rail_y_2: float = 0.0,
-        tcp_offset_1: float = 0.0, tcp_offset_2: float = 0.0, offset_a1: float = 0.0, offset_a2: float = 0.0,
-        lower_a1: float = 0.0, upper_a1: float = 0.0, lower_a2: float = 0.0, upper_a2: float = 0.0,
-        tcp_above: bool = False, min_type2_margin: float = 0.001, check_limits: bool = True,
+        self,
+        *,
+        arm_length_1: float,
+        arm_length_2: float,
+        rail_y_1: float = 0.0,
+        rail_y_2: float = 0.0,
+        tcp_offset_1: float = 0.0,
+        tcp_offset_2: float = 0.0,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        tcp_above: bool = False,
+        min_type2_margin: float = 0.001,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -213,130 +180,21 @@ class P2XType1(OffsetKinematics):
         min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            arm_length_1, arm_length_2, rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2, offset_a1, offset_a2,
-            lower_a1, upper_a1, lower_a2, upper_a2, tcp_above, min_type2_margin, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(lowest_a1=-1e12, lowest_a2=-1e12, highest_a1=1e12, highest_a2=1e12)
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, arm_length_1: float, arm_length_2: float, rail_y_1: float, rail_y_2: float, tcp_offset_1: float,
-        tcp_offset_2: float, offset_a1: float, offset_a2: float, lower_a1: float, upper_a1: float,
-        lower_a2: float, upper_a2: float, tcp_above: bool, min_type2_margin: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (arm_length_1 <= 1e9 and arm_length_1 > 0.0):
-            raise self._refusal("arm_length_1: Length of arm 1", arm_length_1=arm_length_1)
-        if not (arm_length_2 <= 1e9 and arm_length_2 > 0.0):
-            raise self._refusal("arm_length_2: Length of arm 2", arm_length_2=arm_length_2)
-        if not (rail_y_1 >= -1e9 and rail_y_1 <= 1e9):
-            raise self._refusal("rail_y_1: Y of rail 1", rail_y_1=rail_y_1)
-        if not (rail_y_2 >= -1e9 and rail_y_2 <= 1e9):
-            raise self._refusal("rail_y_2: Y of rail 2", rail_y_2=rail_y_2)
-        if not (tcp_offset_1 >= -1e9 and tcp_offset_1 <= 1e9):
-            raise self._refusal(
-                "tcp_offset_1: Plate joint of arm 1, to the left of the centre", tcp_offset_1=tcp_offset_1,
-            )
-        if not (tcp_offset_2 >= -1e9 and tcp_offset_2 <= 1e9):
-            raise self._refusal(
-                "tcp_offset_2: Plate joint of arm 2, to the right of the centre", tcp_offset_2=tcp_offset_2,
-            )
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
-            raise self._refusal(
-                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
-                min_type2_margin=min_type2_margin,
-            )
-        if not (abs(rail_y_1 - rail_y_2) < arm_length_1 + arm_length_2):
-            raise self._refusal(
-                "the arms must be able to meet between the rails", arm_length_1=arm_length_1,
-                arm_length_2=arm_length_2, rail_y_1=rail_y_1, rail_y_2=rail_y_2,
-            )
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        machine_scale = arm_length_1 + arm_length_2  # characteristic length of the machine
-        tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
-        centre_1_to_2_y = rail_y_2 - rail_y_1
-        # assembly mode of this machine: the sign of the determinant of its rods
-        assembly_sign = 1.0 if tcp_above else -1.0
-        centre_1_to_2_y_squared = centre_1_to_2_y*centre_1_to_2_y
-        part_of_normal_divisor = 1e-22*arm_length_1*arm_length_1
-        arm_length_1_squared_times_rounding = 1e-12*arm_length_1*arm_length_1
-        arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
-        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
-        part_of_foot_fraction = arm_length_1_minus_arm_length_2*arm_length_1_plus_arm_length_2
-        machine_scale_times_plane = 1e-6*machine_scale
-        arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
-        part_of_type2_arms_aligned = assembly_sign/(arm_length_1*arm_length_2)
-        arm_length_1_times_arm_length_2 = arm_length_1*arm_length_2
-        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
-        return Constants(
-            arm_length_1=arm_length_1, arm_length_2=arm_length_2, rail_y_1=rail_y_1, rail_y_2=rail_y_2,
-            tcp_offset_1=tcp_offset_1, tcp_offset_2=tcp_offset_2, offset_a1=offset_a1, offset_a2=offset_a2,
-            tcp_above=tcp_above, min_type2_margin=min_type2_margin, check_limits=check_limits,
-            lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
-            highest_a1=highest_a1, lower_a2=effective_lower_a2, upper_a2=effective_upper_a2,
-            unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2, machine_scale=machine_scale,
-            tie=tie, centre_1_to_2_y=centre_1_to_2_y, assembly_sign=assembly_sign,
-            centre_1_to_2_y_squared=centre_1_to_2_y_squared, part_of_normal_divisor=part_of_normal_divisor,
-            arm_length_1_squared_times_rounding=arm_length_1_squared_times_rounding,
-            arm_length_1_plus_arm_length_2=arm_length_1_plus_arm_length_2,
-            arm_length_1_minus_arm_length_2=arm_length_1_minus_arm_length_2,
-            part_of_foot_fraction=part_of_foot_fraction, machine_scale_times_plane=machine_scale_times_plane,
-            arm_length_2_squared_times_rounding=arm_length_2_squared_times_rounding,
-            part_of_type2_arms_aligned=part_of_type2_arms_aligned,
-            arm_length_1_times_arm_length_2=arm_length_1_times_arm_length_2,
-            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_2 = k.arm_length_2
-        assembly_sign = k.assembly_sign
-        centre_1_to_2_y = k.centre_1_to_2_y
-        centre_1_to_2_y_squared = k.centre_1_to_2_y_squared
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_foot_fraction = k.part_of_foot_fraction
-        part_of_normal_divisor = k.part_of_normal_divisor
-        rail_y_1 = k.rail_y_1
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        arm_length_1_squared_times_rounding, arm_length_2 = k.arm_length_1_squared_times_rounding, k.arm_length_2
+        assembly_sign, centre_1_to_2_y = k.assembly_sign, k.centre_1_to_2_y
+        centre_1_to_2_y_squared, offset_a1, offset_a2 = k.centre_1_to_2_y_squared, k.offset_a1, k.offset_a2
+        part_of_foot_fraction, part_of_normal_divisor = k.part_of_foot_fraction, k.part_of_normal_divisor
+        rail_y_1, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.tcp_offset_1, k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -345,31 +203,34 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
-        one_by_normal_square = 1.0/normal_square
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
+        one_by_normal_square = 1.0 / normal_square
         # square of the height over the line of the centres
         height_square = (
-            0.25*(between_centres - arm_length_1_plus_arm_length_2)
-            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
+            0.25
+            * (between_centres - arm_length_1_plus_arm_length_2)
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5*(normal_square + part_of_foot_fraction)*one_by_normal_square
-        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        foot_fraction = 0.5 * (normal_square + part_of_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
-        foot_y = centre_1_to_2_y*foot_fraction
-        y = foot_y + rail_y_1 + centre_1_to_2_x*height_by_normal
-        branch_carriage_1 = (x - pivot_1_x)/arm_length_1
-        branch_carriage_2 = (pivot_2_x - x)/arm_length_2
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = foot_y + rail_y_1 + centre_1_to_2_x * height_by_normal
+        branch_carriage_1 = (x - pivot_1_x) / arm_length_1
+        branch_carriage_2 = (pivot_2_x - x) / arm_length_2
         return (
             (x, y, 0.0),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -383,12 +244,8 @@ class P2XType1(OffsetKinematics):
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        centre_1_to_2_y_squared = k.centre_1_to_2_y_squared
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_normal_divisor = k.part_of_normal_divisor
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        centre_1_to_2_y_squared, offset_a1, offset_a2 = k.centre_1_to_2_y_squared, k.offset_a1, k.offset_a2
+        part_of_normal_divisor, tcp_offset_1, tcp_offset_2 = k.part_of_normal_divisor, k.tcp_offset_1, k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -397,16 +254,19 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
         # square of the height over the line of the centres
         height_square = (
-            0.25*(between_centres - arm_length_1_plus_arm_length_2)
-            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)/normal_square
+            0.25
+            * (between_centres - arm_length_1_plus_arm_length_2)
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (arm_length_1_plus_arm_length_2 + between_centres)
+            / normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
@@ -414,56 +274,47 @@ class P2XType1(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2 = signs
         k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_2 = k.arm_length_2
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        machine_scale_times_plane = k.machine_scale_times_plane
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
+        arm_length_1, arm_length_1_squared_times_rounding = k.arm_length_1, k.arm_length_1_squared_times_rounding
+        arm_length_2, arm_length_2_squared_times_rounding = k.arm_length_2, k.arm_length_2_squared_times_rounding
+        machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
+        offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
+        rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
+        if not are_usable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         span_1_y = y - rail_y_1
-        radicand_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
+        radicand_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_1_squared_times_rounding):
-            missing = 0.5*(abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
+            missing = 0.5 * (abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_y = y - rail_y_2
-        radicand_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
+        radicand_a2 = (arm_length_2 + span_2_y) * (arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_2_squared_times_rounding):
-            missing = 0.5*(abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
+            missing = 0.5 * (abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
-        a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1
+        a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1
         rod_1_x = span_1_x - a1
         span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
-        a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
+        a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         rod_2_x = span_2_x - a2
-        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -473,47 +324,25 @@ class P2XType1(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
+        highest_a1, highest_a2, lowest_a1, lowest_a2 = k.highest_a1, k.highest_a2, k.lowest_a1, k.lowest_a2
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond("A1", axis_a1, lowest_a1, highest_a1, "u")
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond("A2", axis_a2, lowest_a2, highest_a2, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_1_times_arm_length_2 = k.arm_length_1_times_arm_length_2
-        arm_length_2 = k.arm_length_2
-        assembly_sign = k.assembly_sign
-        centre_1_to_2_y = k.centre_1_to_2_y
-        centre_1_to_2_y_squared = k.centre_1_to_2_y_squared
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_foot_fraction = k.part_of_foot_fraction
-        part_of_normal_divisor = k.part_of_normal_divisor
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        arm_length_1_times_arm_length_2, arm_length_2 = k.arm_length_1_times_arm_length_2, k.arm_length_2
+        assembly_sign, centre_1_to_2_y = k.assembly_sign, k.centre_1_to_2_y
+        centre_1_to_2_y_squared, offset_a1, offset_a2 = k.centre_1_to_2_y_squared, k.offset_a1, k.offset_a2
+        part_of_foot_fraction, part_of_normal_divisor = k.part_of_foot_fraction, k.part_of_normal_divisor
+        rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -522,36 +351,39 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
-        one_by_normal_square = 1.0/normal_square
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
+        one_by_normal_square = 1.0 / normal_square
         # square of the height over the line of the centres
         height_square = (
-            0.25*(between_centres - arm_length_1_plus_arm_length_2)
-            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
+            0.25
+            * (between_centres - arm_length_1_plus_arm_length_2)
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5*(normal_square + part_of_foot_fraction)*one_by_normal_square
-        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        foot_fraction = 0.5 * (normal_square + part_of_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         rod_1_x = x - pivot_1_x
-        margin_upright_1 = rod_1_x/arm_length_1
+        margin_upright_1 = rod_1_x / arm_length_1
         rod_2_x = x - pivot_2_x
-        margin_upright_2 = -rod_2_x/arm_length_2
-        foot_y = centre_1_to_2_y*foot_fraction
-        y = foot_y + rail_y_1 + centre_1_to_2_x*height_by_normal
+        margin_upright_2 = -rod_2_x / arm_length_2
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = foot_y + rail_y_1 + centre_1_to_2_x * height_by_normal
         rod_1_y = y - rail_y_1
         rod_2_y = y - rail_y_2
-        margin_arms_aligned = (rod_1_x*rod_2_y - rod_1_y*rod_2_x)/arm_length_1_times_arm_length_2
+        margin_arms_aligned = (rod_1_x * rod_2_y - rod_1_y * rod_2_x) / arm_length_1_times_arm_length_2
         return (margin_upright_1, margin_upright_2, margin_arms_aligned)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -560,19 +392,12 @@ class P2XType1(OffsetKinematics):
         k = self._constants
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        centre_1_to_2_y = k.centre_1_to_2_y
-        centre_1_to_2_y_squared = k.centre_1_to_2_y_squared
-        machine_scale_squared_times_free_angle = k.machine_scale_squared_times_free_angle
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_foot_fraction = k.part_of_foot_fraction
-        part_of_normal_divisor = k.part_of_normal_divisor
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        arm_length_1_squared_times_rounding, assembly_sign = k.arm_length_1_squared_times_rounding, k.assembly_sign
+        centre_1_to_2_y, centre_1_to_2_y_squared = k.centre_1_to_2_y, k.centre_1_to_2_y_squared
+        machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
+        offset_a2, part_of_foot_fraction = k.offset_a2, k.part_of_foot_fraction
+        part_of_normal_divisor, rail_y_1, rail_y_2 = k.part_of_normal_divisor, k.rail_y_1, k.rail_y_2
+        tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -581,46 +406,49 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
-        one_by_normal_square = 1.0/normal_square
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
+        one_by_normal_square = 1.0 / normal_square
         # square of the height over the line of the centres
         height_square = (
-            0.25*(between_centres - arm_length_1_plus_arm_length_2)
-            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
+            0.25
+            * (between_centres - arm_length_1_plus_arm_length_2)
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5*(normal_square + part_of_foot_fraction)*one_by_normal_square
-        foot_y = centre_1_to_2_y*foot_fraction
-        y = foot_y + rail_y_1 + centre_1_to_2_x*height_by_normal
-        slope_1_by_y = 2.0*(y - rail_y_1)
-        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
-        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
-        slope_2_by_x = 2.0*(x - pivot_2_x)
-        slope_1_by_y_times_slope_2_by_x = slope_1_by_y*slope_2_by_x
-        slope_1_by_x = 2.0*(x - pivot_1_x)
-        slope_2_by_y = 2.0*(y - rail_y_2)
-        slope_1_by_x_times_slope_2_by_y = slope_1_by_x*slope_2_by_y
+        foot_fraction = 0.5 * (normal_square + part_of_foot_fraction) * one_by_normal_square
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = foot_y + rail_y_1 + centre_1_to_2_x * height_by_normal
+        slope_1_by_y = 2.0 * (y - rail_y_1)
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        slope_2_by_x = 2.0 * (x - pivot_2_x)
+        slope_1_by_y_times_slope_2_by_x = slope_1_by_y * slope_2_by_x
+        slope_1_by_x = 2.0 * (x - pivot_1_x)
+        slope_2_by_y = 2.0 * (y - rail_y_2)
+        slope_1_by_x_times_slope_2_by_y = slope_1_by_x * slope_2_by_y
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = slope_1_by_x_times_slope_2_by_y - slope_1_by_y_times_slope_2_by_x
         # nothing controls the plate
         if not (abs(determinant) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
-        one_by_determinant_divisor = 1.0/determinant
-        part = one_by_determinant_divisor*slope_1_by_x*slope_2_by_x
+        one_by_determinant_divisor = 1.0 / determinant
+        part = one_by_determinant_divisor * slope_1_by_x * slope_2_by_x
         return (
             (
-                one_by_determinant_divisor*slope_1_by_x_times_slope_2_by_y,
-                -one_by_determinant_divisor*slope_1_by_y_times_slope_2_by_x,
+                one_by_determinant_divisor * slope_1_by_x_times_slope_2_by_y,
+                -one_by_determinant_divisor * slope_1_by_y_times_slope_2_by_x,
             ),
             (-part, part),
         )
@@ -630,31 +458,19 @@ class P2XType1(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
         sigma_carriage_1, sigma_carriage_2 = signs
         k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_2 = k.arm_length_2
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        machine_scale_times_plane = k.machine_scale_times_plane
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_type2_arms_aligned = k.part_of_type2_arms_aligned
-        rail_y_1 = k.rail_y_1
-        rail_y_2 = k.rail_y_2
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
-        ):
+        arm_length_1, arm_length_1_squared_times_rounding = k.arm_length_1, k.arm_length_1_squared_times_rounding
+        arm_length_2, arm_length_2_squared_times_rounding = k.arm_length_2, k.arm_length_2_squared_times_rounding
+        machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
+        offset_a1, offset_a2, part_of_type2_arms_aligned = k.offset_a1, k.offset_a2, k.part_of_type2_arms_aligned
+        rail_y_1, rail_y_2, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.rail_y_2, k.tcp_offset_1, k.tcp_offset_2
+        if not are_usable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
@@ -662,30 +478,30 @@ class P2XType1(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_y = y - point_y  # position of the flange: the point less its offset
         span_1_y = flange_y - rail_y_1
-        radicand_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
+        radicand_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_1_squared_times_rounding):
-            missing = 0.5*(abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
+            missing = 0.5 * (abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_y = flange_y - rail_y_2
-        radicand_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
+        radicand_a2 = (arm_length_2 + span_2_y) * (arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_2_squared_times_rounding):
-            missing = 0.5*(abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
+            missing = 0.5 * (abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         flange_x = x - point_x  # position of the flange: the point less its offset
         span_1_x = flange_x - tcp_offset_1  # rod 1: known part of its vector
-        a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1
+        a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1
         rod_1_x = span_1_x - a1
         span_2_x = flange_x + tcp_offset_2  # rod 2: known part of its vector
-        a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
+        a2 = span_2_x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         rod_2_x = span_2_x - a2
-        type2_arms_aligned = part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
+        type2_arms_aligned = part_of_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             missing = min_type2_margin - type2_arms_aligned
             return Diagnosis(
-                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "arms_aligned: the other assembly mode, or too near to losing the plate", missing
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -695,20 +511,13 @@ class P2XType1(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
-        arm_length_1_squared_times_rounding = k.arm_length_1_squared_times_rounding
-        arm_length_2 = k.arm_length_2
-        assembly_sign = k.assembly_sign
-        centre_1_to_2_y = k.centre_1_to_2_y
-        centre_1_to_2_y_squared = k.centre_1_to_2_y_squared
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_foot_fraction = k.part_of_foot_fraction
-        part_of_normal_divisor = k.part_of_normal_divisor
-        tcp_offset_1 = k.tcp_offset_1
-        tcp_offset_2 = k.tcp_offset_2
+        arm_length_1_squared_times_rounding, arm_length_2 = k.arm_length_1_squared_times_rounding, k.arm_length_2
+        assembly_sign, centre_1_to_2_y = k.assembly_sign, k.centre_1_to_2_y
+        centre_1_to_2_y_squared, offset_a1, offset_a2 = k.centre_1_to_2_y_squared, k.offset_a1, k.offset_a2
+        part_of_foot_fraction, part_of_normal_divisor = k.part_of_foot_fraction, k.part_of_normal_divisor
+        tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -717,29 +526,32 @@ class P2XType1(OffsetKinematics):
         a2 = axis_a2 - offset_a2
         pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
-        between_centres = (sqrt(normal_square) if normal_square > 0.0 else 0.0)  # distance between the centres
-        one_by_normal_square = 1.0/normal_square
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
+        one_by_normal_square = 1.0 / normal_square
         # square of the height over the line of the centres
         height_square = (
-            0.25*(between_centres - arm_length_1_plus_arm_length_2)
-            *(arm_length_1_minus_arm_length_2 + between_centres)*(arm_length_1_minus_arm_length_2 - between_centres)
-            *(arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
+            0.25
+            * (between_centres - arm_length_1_plus_arm_length_2)
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * one_by_normal_square
         )
         # the rods do not meet
         if not (height_square >= -arm_length_1_squared_times_rounding):
             return Status.IMPOSSIBLE
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5*(normal_square + part_of_foot_fraction)*one_by_normal_square
-        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        foot_fraction = 0.5 * (normal_square + part_of_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        flange_x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
-        branch_carriage_1 = (flange_x - pivot_1_x)/arm_length_1
-        branch_carriage_2 = (pivot_2_x - flange_x)/arm_length_2
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        flange_x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        branch_carriage_1 = (flange_x - pivot_1_x) / arm_length_1
+        branch_carriage_2 = (pivot_2_x - flange_x) / arm_length_2
         return (branch_carriage_1, branch_carriage_2)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -753,8 +565,7 @@ class P2XType1(OffsetKinematics):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     @property
     def _criteria(self) -> tuple[Criterion, ...]:

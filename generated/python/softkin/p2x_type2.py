@@ -27,59 +27,46 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import sqrt
-from softkin._types import (
-    Axis,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
-from softkin._unrolled.p2x_type2 import unrolled
+from softkin._scalar import are_usable, sqrt
+from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    arm_length: float
-    tcp_link_distance: float
-    offset_a1: float
-    offset_a2: float
-    tcp_above: bool
-    min_type2_margin: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    machine_scale: float
-    assembly_sign: float
-    span_1_x: float
-    machine_scale_times_rounding: float
-    arm_length_squared_times_rounding: float
-    machine_scale_times_plane: float
-    part_of_constant: float
-    assembly_sign_by_arm_length: float
-    machine_scale_squared_times_free_angle: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        arm_length, tcp_link_distance, offset_a1 = p["arm_length"], p["tcp_link_distance"], p["offset_a1"]
+        offset_a2, tcp_above, min_type2_margin = p["offset_a2"], bool(p["tcp_above"]), p["min_type2_margin"]
+        self.lowest_a1, self.highest_a1, *_ = machine._window("a1")
+        self.lowest_a2, self.highest_a2, *_ = machine._window("a2")
+        machine_scale = arm_length  # characteristic length of the machine
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = 1.0 if tcp_above else -1.0
+        span_1_x = 0.5 * tcp_link_distance  # rod 1: known part of its vector
+        machine_scale_times_rounding = 1e-12 * machine_scale
+        arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
+        machine_scale_times_plane = 1e-6 * machine_scale
+        part_of_constant = 2.5e-13 * arm_length * arm_length
+        assembly_sign_by_arm_length = assembly_sign / arm_length
+        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        self.arm_length, self.tcp_link_distance, self.offset_a1 = arm_length, tcp_link_distance, offset_a1
+        self.offset_a2, self.min_type2_margin, self.assembly_sign = offset_a2, min_type2_margin, assembly_sign
+        self.span_1_x, self.machine_scale_times_rounding = span_1_x, machine_scale_times_rounding
+        self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
+        self.machine_scale_times_plane, self.part_of_constant = machine_scale_times_plane, part_of_constant
+        self.assembly_sign_by_arm_length = assembly_sign_by_arm_length
+        self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
 
 
 class P2XType2(OffsetKinematics):
@@ -88,7 +75,7 @@ class P2XType2(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_constants",)
 
     NAME = "Kin_P2X_Type2"
     AXES = (
@@ -96,52 +83,21 @@ class P2XType2(OffsetKinematics):
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="arm_length", kind="length", unit="u", meaning="Length of the arms", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
+        Parameter.of("length", "arm_length", "Length of the arms"),
+        Parameter.of(
+            "distance", "tcp_link_distance", "Distance of the two joints of the plate; negative: crossed arms"
         ),
-        Parameter(
-            name="tcp_link_distance", kind="distance", unit="u",
-            meaning="Distance of the two joints of the plate; negative: crossed arms", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
+        Parameter.of("distance", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "tcp_above", "assembly mode: above instead of below"),
+        Parameter.of(
+            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
         ),
-        Parameter(
-            name="offset_a1", kind="distance", unit="u", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="distance", unit="u", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="distance", unit="u", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="distance", unit="u", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="distance", unit="u", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="distance", unit="u", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_above", kind="flag", unit="", meaning="assembly mode: above instead of below", low=0.0,
-            high=1.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
-            low_is_open=False, default=0.001,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = ()
     DEFAULT_CONFIGURATION = ()
@@ -155,9 +111,18 @@ class P2XType2(OffsetKinematics):
     DISTANCE_AXES = (0, 1)
 
     def __init__(
-        self, *, arm_length: float, tcp_link_distance: float = 0.0, offset_a1: float = 0.0,
-        offset_a2: float = 0.0, lower_a1: float = 0.0, upper_a1: float = 0.0, lower_a2: float = 0.0,
-        upper_a2: float = 0.0, tcp_above: bool = False, min_type2_margin: float = 0.001,
+        self,
+        *,
+        arm_length: float,
+        tcp_link_distance: float = 0.0,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        tcp_above: bool = False,
+        min_type2_margin: float = 0.001,
         check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
@@ -174,174 +139,85 @@ class P2XType2(OffsetKinematics):
         min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            arm_length, tcp_link_distance, offset_a1, offset_a2, lower_a1, upper_a1, lower_a2, upper_a2, tcp_above,
-            min_type2_margin, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(lowest_a1=-1e12, lowest_a2=-1e12, highest_a1=1e12, highest_a2=1e12)
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, arm_length: float, tcp_link_distance: float, offset_a1: float, offset_a2: float, lower_a1: float,
-        upper_a1: float, lower_a2: float, upper_a2: float, tcp_above: bool, min_type2_margin: float,
-        check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (arm_length <= 1e9 and arm_length > 0.0):
-            raise self._refusal("arm_length: Length of the arms", arm_length=arm_length)
-        if not (tcp_link_distance >= -1e9 and tcp_link_distance <= 1e9):
-            raise self._refusal(
-                "tcp_link_distance: Distance of the two joints of the plate; negative: crossed arms",
-                tcp_link_distance=tcp_link_distance,
-            )
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
-            raise self._refusal(
-                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
-                min_type2_margin=min_type2_margin,
-            )
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        machine_scale = arm_length  # characteristic length of the machine
-        # assembly mode of this machine: the sign of the determinant of its rods
-        assembly_sign = 1.0 if tcp_above else -1.0
-        span_1_x = 0.5*tcp_link_distance  # rod 1: known part of its vector
-        machine_scale_times_rounding = 1e-12*machine_scale
-        arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
-        machine_scale_times_plane = 1e-6*machine_scale
-        part_of_constant = 2.5e-13*arm_length*arm_length
-        assembly_sign_by_arm_length = assembly_sign/arm_length
-        machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale
-        return Constants(
-            arm_length=arm_length, tcp_link_distance=tcp_link_distance, offset_a1=offset_a1, offset_a2=offset_a2,
-            tcp_above=tcp_above, min_type2_margin=min_type2_margin, check_limits=check_limits,
-            lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
-            highest_a1=highest_a1, lower_a2=effective_lower_a2, upper_a2=effective_upper_a2,
-            unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2, machine_scale=machine_scale,
-            assembly_sign=assembly_sign, span_1_x=span_1_x, machine_scale_times_rounding=machine_scale_times_rounding,
-            arm_length_squared_times_rounding=arm_length_squared_times_rounding,
-            machine_scale_times_plane=machine_scale_times_plane, part_of_constant=part_of_constant,
-            assembly_sign_by_arm_length=assembly_sign_by_arm_length,
-            machine_scale_squared_times_free_angle=machine_scale_squared_times_free_angle,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        tcp_link_distance = k.tcp_link_distance
+        arm_length, arm_length_squared_times_rounding = k.arm_length, k.arm_length_squared_times_rounding
+        assembly_sign, machine_scale_times_rounding = k.assembly_sign, k.machine_scale_times_rounding
+        offset_a1, offset_a2, tcp_link_distance = k.offset_a1, k.offset_a2, k.tcp_link_distance
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
+        pivot_1_x = -0.5 * (a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
         # the mirror that the machine does not have
         if not (pivot_1_x >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
-        radicand_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # quadratic equation for y: rod 1
+        radicand_y = (arm_length + pivot_1_x) * (arm_length - pivot_1_x)  # quadratic equation for y: rod 1
         # rod 1 cannot reach
         if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        x = 0.5*(a1 + a2)  # x from the x equation, which is linear in it
-        y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0)*assembly_sign
+        x = 0.5 * (a1 + a2)  # x from the x equation, which is linear in it
+        y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0) * assembly_sign
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ())
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        arm_length, arm_length_squared_times_rounding = k.arm_length, k.arm_length_squared_times_rounding
+        machine_scale_times_rounding, offset_a1, offset_a2 = k.machine_scale_times_rounding, k.offset_a1, k.offset_a2
         tcp_link_distance = k.tcp_link_distance
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
+        pivot_1_x = -0.5 * (a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
         # the mirror that the machine does not have
         if not (pivot_1_x >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
-        radicand_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # quadratic equation for y: rod 1
+        radicand_y = (arm_length + pivot_1_x) * (arm_length - pivot_1_x)  # quadratic equation for y: rod 1
         # rod 1 cannot reach
         if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self._constants
-        arm_length = k.arm_length
-        assembly_sign_by_arm_length = k.assembly_sign_by_arm_length
-        machine_scale_times_plane = k.machine_scale_times_plane
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_constant = k.part_of_constant
-        span_1_x = k.span_1_x
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
+        arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
+        machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
+        offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
+        if not are_usable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        radicand_a2 = (arm_length + y)*(arm_length - y)  # quadratic equation for a2: rod 1 (through x)
+        radicand_a2 = (arm_length + y) * (arm_length - y)  # quadratic equation for a2: rod 1 (through x)
         # rod 1 (through x) cannot reach
         if not (radicand_a2 >= -part_of_constant):
-            missing = 0.5*(abs(arm_length - y) + abs(arm_length + y)) - arm_length
+            missing = 0.5 * (abs(arm_length - y) + abs(arm_length + y)) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
-        type2_flat = assembly_sign_by_arm_length*y
+        type2_flat = assembly_sign_by_arm_length * y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
             missing = min_type2_margin - type2_flat
             return Diagnosis(
-                Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing
             )
         middle_a2 = span_1_x + x
         a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
-        a1 = 2.0*x - a2  # a1 from the x equation, which is linear in it
+        a1 = 2.0 * x - a2  # a1 from the x equation, which is linear in it
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
@@ -350,89 +226,68 @@ class P2XType2(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
+        highest_a1, highest_a2, lowest_a1, lowest_a2 = k.highest_a1, k.highest_a2, k.lowest_a1, k.lowest_a2
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond("A1", axis_a1, lowest_a1, highest_a1, "u")
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond("A2", axis_a2, lowest_a2, highest_a2, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        span_1_x = k.span_1_x
-        tcp_link_distance = k.tcp_link_distance
+        arm_length, arm_length_squared_times_rounding = k.arm_length, k.arm_length_squared_times_rounding
+        assembly_sign, machine_scale_times_rounding = k.assembly_sign, k.machine_scale_times_rounding
+        offset_a1, offset_a2, span_1_x, tcp_link_distance = k.offset_a1, k.offset_a2, k.span_1_x, k.tcp_link_distance
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
+        pivot_1_x = -0.5 * (a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
         # the mirror that the machine does not have
         if not (pivot_1_x >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
-        radicand_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # quadratic equation for y: rod 1
+        radicand_y = (arm_length + pivot_1_x) * (arm_length - pivot_1_x)  # quadratic equation for y: rod 1
         # rod 1 cannot reach
         if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        x = 0.5*(a1 + a2)  # x from the x equation, which is linear in it
-        margin_meet_a2 = -2.0*(span_1_x + x - a2)/arm_length
-        y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0)*assembly_sign
-        margin_flat = y/arm_length
+        x = 0.5 * (a1 + a2)  # x from the x equation, which is linear in it
+        margin_meet_a2 = -2.0 * (span_1_x + x - a2) / arm_length
+        y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0) * assembly_sign
+        margin_flat = y / arm_length
         return (margin_meet_a2, margin_flat)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
+        arm_length, arm_length_squared_times_rounding = k.arm_length, k.arm_length_squared_times_rounding
         assembly_sign = k.assembly_sign
         machine_scale_squared_times_free_angle = k.machine_scale_squared_times_free_angle
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        machine_scale_times_rounding, offset_a1, offset_a2 = k.machine_scale_times_rounding, k.offset_a1, k.offset_a2
         tcp_link_distance = k.tcp_link_distance
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
+        pivot_1_x = -0.5 * (a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
         # the mirror that the machine does not have
         if not (pivot_1_x >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
-        radicand_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # quadratic equation for y: rod 1
+        radicand_y = (arm_length + pivot_1_x) * (arm_length - pivot_1_x)  # quadratic equation for y: rod 1
         # rod 1 cannot reach
         if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
-        y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0)*assembly_sign
-        slope_2_by_y = 2.0*y
+        y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0) * assembly_sign
+        slope_2_by_y = 2.0 * y
         # nothing controls the plate
         if not (abs(slope_2_by_y) > machine_scale_squared_times_free_angle):
             return Status.IMPOSSIBLE
         slope_2_by_y_times_half_by_slope_2_by_y = 0.5
-        pivot_1_x_by_slope_2_by_y = pivot_1_x/slope_2_by_y
+        pivot_1_x_by_slope_2_by_y = pivot_1_x / slope_2_by_y
         return (
             (slope_2_by_y_times_half_by_slope_2_by_y, slope_2_by_y_times_half_by_slope_2_by_y),
             (pivot_1_x_by_slope_2_by_y, -pivot_1_x_by_slope_2_by_y),
@@ -443,47 +298,39 @@ class P2XType2(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
         k = self._constants
-        arm_length = k.arm_length
-        assembly_sign_by_arm_length = k.assembly_sign_by_arm_length
-        machine_scale_times_plane = k.machine_scale_times_plane
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        part_of_constant = k.part_of_constant
-        span_1_x = k.span_1_x
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
-        ):
+        arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
+        machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
+        offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
+        if not are_usable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_y = y - point_y  # position of the flange: the point less its offset
-        radicand_a2 = (arm_length + flange_y)*(arm_length - flange_y)  # quadratic equation for a2: rod 1 (through x)
+        # quadratic equation for a2: rod 1 (through x)
+        radicand_a2 = (arm_length + flange_y) * (arm_length - flange_y)
         # rod 1 (through x) cannot reach
         if not (radicand_a2 >= -part_of_constant):
-            missing = 0.5*(abs(arm_length - flange_y) + abs(arm_length + flange_y)) - arm_length
+            missing = 0.5 * (abs(arm_length - flange_y) + abs(arm_length + flange_y)) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
-        type2_flat = assembly_sign_by_arm_length*flange_y
+        type2_flat = assembly_sign_by_arm_length * flange_y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
             missing = min_type2_margin - type2_flat
             return Diagnosis(
-                Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "flat: the other assembly mode, or too near to losing the plate", missing
             )
         flange_x = x - point_x  # position of the flange: the point less its offset
         middle_a2 = flange_x + span_1_x
         a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
-        a1 = 2.0*flange_x - a2  # a1 from the x equation, which is linear in it
+        a1 = 2.0 * flange_x - a2  # a1 from the x equation, which is linear in it
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
@@ -492,40 +339,49 @@ class P2XType2(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        arm_length, arm_length_squared_times_rounding = k.arm_length, k.arm_length_squared_times_rounding
+        machine_scale_times_rounding, offset_a1, offset_a2 = k.machine_scale_times_rounding, k.offset_a1, k.offset_a2
         tcp_link_distance = k.tcp_link_distance
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        pivot_1_x = -0.5*(a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
+        pivot_1_x = -0.5 * (a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
         # the mirror that the machine does not have
         if not (pivot_1_x >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
-        radicand_y = (arm_length + pivot_1_x)*(arm_length - pivot_1_x)  # quadratic equation for y: rod 1
+        radicand_y = (arm_length + pivot_1_x) * (arm_length - pivot_1_x)  # quadratic equation for y: rod 1
         # rod 1 cannot reach
         if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ()
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        """The one branch: see `Mechanism.branches`."""
+        return (self.branch(frame, (), reference),)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        solve = self._one_trusted
-        return solve(frame, signs, reference)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        (x, y, z), _ = frame
+        k = self._constants
+        arm_length, assembly_sign_by_arm_length = k.arm_length, k.assembly_sign_by_arm_length
+        machine_scale_times_plane, min_type2_margin = k.machine_scale_times_plane, k.min_type2_margin
+        offset_a1, offset_a2, part_of_constant, span_1_x = k.offset_a1, k.offset_a2, k.part_of_constant, k.span_1_x
+        # z: a planar machine has none
+        if not (abs(z) <= machine_scale_times_plane):
+            return None
+        radicand_a2 = (arm_length + y) * (arm_length - y)  # quadratic equation for a2: rod 1 (through x)
+        # rod 1 (through x) cannot reach
+        if not (radicand_a2 >= -part_of_constant):
+            return None
+        type2_flat = assembly_sign_by_arm_length * y
+        # flat: the other assembly mode, or too near to losing the plate
+        if not (type2_flat >= min_type2_margin):
+            return None
+        a2 = span_1_x + x + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)
+        a1 = 2.0 * x - a2  # a1 from the x equation, which is linear in it
+        return (a1 + offset_a1, a2 + offset_a2)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

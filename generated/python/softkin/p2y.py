@@ -25,57 +25,33 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._types import (
-    Axis,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
-from softkin._unrolled.p2y import unrolled
+from softkin._scalar import are_usable
+from softkin._types import Axis, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    offset_a1: float
-    offset_a2: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    lower_x: float
-    upper_x: float
-    unlimited_x: bool
-    lowest_x: float
-    highest_x: float
-    lower_y: float
-    upper_y: float
-    unlimited_y: bool
-    lowest_y: float
-    highest_y: float
-    machine_scale: float
-    machine_scale_times_plane: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        offset_a1, offset_a2 = p["offset_a1"], p["offset_a2"]
+        self.lowest_a1, self.highest_a1, *_ = machine._window("a1")
+        self.lowest_a2, self.highest_a2, *_ = machine._window("a2")
+        self.lowest_x, self.highest_x, *_ = machine._window("x")
+        self.lowest_y, self.highest_y, *_ = machine._window("y")
+        machine_scale = 1.0  # characteristic length of the machine
+        machine_scale_times_plane = 1e-6 * machine_scale
+        self.offset_a1, self.offset_a2, self.machine_scale_times_plane = offset_a1, offset_a2, machine_scale_times_plane
 
 
 class P2Y(OffsetKinematics):
@@ -84,7 +60,7 @@ class P2Y(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_constants",)
 
     NAME = "Kin_P2Y"
     AXES = (
@@ -92,54 +68,17 @@ class P2Y(OffsetKinematics):
         Axis(name="A2", kind="linear", unit="u", meaning="Motor 2", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="offset_a1", kind="distance", unit="u", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="distance", unit="u", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="distance", unit="u", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="distance", unit="u", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="distance", unit="u", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="distance", unit="u", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_x", kind="distance", unit="u",
-            meaning="lower limit of X of the carriage, both 0: no limit", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_x", kind="distance", unit="u",
-            meaning="upper limit of X of the carriage, both 0: no limit", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_y", kind="distance", unit="u",
-            meaning="lower limit of Y of the carriage, both 0: no limit", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_y", kind="distance", unit="u",
-            meaning="upper limit of Y of the carriage, both 0: no limit", low=-1000000000.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("distance", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_x", "lower limit of X of the carriage, both 0: no limit"),
+        Parameter.of("distance", "upper_x", "upper limit of X of the carriage, both 0: no limit"),
+        Parameter.of("distance", "lower_y", "lower limit of Y of the carriage, both 0: no limit"),
+        Parameter.of("distance", "upper_y", "upper limit of Y of the carriage, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = ()
     DEFAULT_CONFIGURATION = ()
@@ -153,9 +92,19 @@ class P2Y(OffsetKinematics):
     DISTANCE_AXES = (0, 1)
 
     def __init__(
-        self, *, offset_a1: float = 0.0, offset_a2: float = 0.0, lower_a1: float = 0.0, upper_a1: float = 0.0,
-        lower_a2: float = 0.0, upper_a2: float = 0.0, lower_x: float = 0.0, upper_x: float = 0.0,
-        lower_y: float = 0.0, upper_y: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        lower_x: float = 0.0,
+        upper_x: float = 0.0,
+        lower_y: float = 0.0,
+        upper_y: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -171,101 +120,21 @@ class P2Y(OffsetKinematics):
         upper_y: upper limit of Y of the carriage, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            offset_a1, offset_a2, lower_a1, upper_a1, lower_a2, upper_a2, lower_x, upper_x, lower_y, upper_y,
-            check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a1=-1e12, lowest_a2=-1e12, lowest_x=-1e12, lowest_y=-1e12, highest_a1=1e12, highest_a2=1e12,
-                highest_x=1e12, highest_y=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, offset_a1: float, offset_a2: float, lower_a1: float, upper_a1: float, lower_a2: float,
-        upper_a2: float, lower_x: float, upper_x: float, lower_y: float, upper_y: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (lower_x >= -1e9 and lower_x <= 1e9):
-            raise self._refusal("lower_x: lower limit of X of the carriage, both 0: no limit", lower_x=lower_x)
-        if not (upper_x >= -1e9 and upper_x <= 1e9):
-            raise self._refusal("upper_x: upper limit of X of the carriage, both 0: no limit", upper_x=upper_x)
-        if not (lower_y >= -1e9 and lower_y <= 1e9):
-            raise self._refusal("lower_y: lower limit of Y of the carriage, both 0: no limit", lower_y=lower_y)
-        if not (upper_y >= -1e9 and upper_y <= 1e9):
-            raise self._refusal("upper_y: upper limit of Y of the carriage, both 0: no limit", upper_y=upper_y)
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        if not ((lower_x < upper_x) or (abs(lower_x) + abs(upper_x) <= 0.0)):
-            raise self._refusal("lower_x below upper_x, or both 0", lower_x=lower_x, upper_x=upper_x)
-        unlimited_x = abs(lower_x) + abs(upper_x) <= 0.0  # x: whether it has no limits
-        effective_lower_x = lower_x
-        effective_upper_x = upper_x
-        tolerance_x = 1e-9 + 1e-9*abs(effective_lower_x) + 1e-9*abs(effective_upper_x)
-        lowest_x = -1e12 if unlimited_x else effective_lower_x - tolerance_x
-        highest_x = 1e12 if unlimited_x else effective_upper_x + tolerance_x
-        if not ((lower_y < upper_y) or (abs(lower_y) + abs(upper_y) <= 0.0)):
-            raise self._refusal("lower_y below upper_y, or both 0", lower_y=lower_y, upper_y=upper_y)
-        unlimited_y = abs(lower_y) + abs(upper_y) <= 0.0  # y: whether it has no limits
-        effective_lower_y = lower_y
-        effective_upper_y = upper_y
-        tolerance_y = 1e-9 + 1e-9*abs(effective_lower_y) + 1e-9*abs(effective_upper_y)
-        lowest_y = -1e12 if unlimited_y else effective_lower_y - tolerance_y
-        highest_y = 1e12 if unlimited_y else effective_upper_y + tolerance_y
-        machine_scale = 1.0  # characteristic length of the machine
-        machine_scale_times_plane = 1e-6*machine_scale
-        return Constants(
-            offset_a1=offset_a1, offset_a2=offset_a2, check_limits=check_limits, lower_a1=effective_lower_a1,
-            upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1, highest_a1=highest_a1,
-            lower_a2=effective_lower_a2, upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2,
-            highest_a2=highest_a2, lower_x=effective_lower_x, upper_x=effective_upper_x, unlimited_x=unlimited_x,
-            lowest_x=lowest_x, highest_x=highest_x, lower_y=effective_lower_y, upper_y=effective_upper_y,
-            unlimited_y=unlimited_y, lowest_y=lowest_y, highest_y=highest_y, machine_scale=machine_scale,
-            machine_scale_times_plane=machine_scale_times_plane,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        x = 0.5*(a1 - a2)
-        y = 0.5*(a1 + a2)
+        x = 0.5 * (a1 - a2)
+        y = 0.5 * (a1 + a2)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ())
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
@@ -277,16 +146,13 @@ class P2Y(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self._constants
-        machine_scale_times_plane = k.machine_scale_times_plane
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
+        machine_scale_times_plane, offset_a1, offset_a2 = k.machine_scale_times_plane, k.offset_a1, k.offset_a2
+        if not are_usable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -302,48 +168,21 @@ class P2Y(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_x = k.highest_x
-        highest_y = k.highest_y
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_x = k.lowest_x
-        lowest_y = k.lowest_y
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
+        highest_a1, highest_a2, highest_x, highest_y = k.highest_a1, k.highest_a2, k.highest_x, k.highest_y
+        lowest_a1, lowest_a2, lowest_x, lowest_y = k.lowest_a1, k.lowest_a2, k.lowest_x, k.lowest_y
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond("A1", axis_a1, lowest_a1, highest_a1, "u")
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond("A2", axis_a2, lowest_a2, highest_a2, "u")
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
-        value_x = 0.5*(a1 - a2)  # X of the carriage
-        # limits of X of the carriage
-        if not (value_x >= lowest_x):
-            missing = lowest_x - value_x
-            return Diagnosis(Status.UNREACHABLE, "X of the carriage: below its lower limit [u]", missing)
-        if not (value_x <= highest_x):
-            missing = value_x - highest_x
-            return Diagnosis(Status.UNREACHABLE, "X of the carriage: above its upper limit [u]", missing)
-        value_y = 0.5*(a1 + a2)  # Y of the carriage
-        # limits of Y of the carriage
-        if not (value_y >= lowest_y):
-            missing = lowest_y - value_y
-            return Diagnosis(Status.UNREACHABLE, "Y of the carriage: below its lower limit [u]", missing)
-        if not (value_y <= highest_y):
-            missing = value_y - highest_y
-            return Diagnosis(Status.UNREACHABLE, "Y of the carriage: above its upper limit [u]", missing)
+        value_x = 0.5 * (a1 - a2)  # X of the carriage
+        if not lowest_x <= value_x <= highest_x:
+            return beyond("X of the carriage", value_x, lowest_x, highest_x, "u")
+        value_y = 0.5 * (a1 + a2)  # Y of the carriage
+        if not lowest_y <= value_y <= highest_y:
+            return beyond("Y of the carriage", value_y, lowest_y, highest_y, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
@@ -367,20 +206,14 @@ class P2Y(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
         k = self._constants
-        machine_scale_times_plane = k.machine_scale_times_plane
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
-        ):
+        machine_scale_times_plane, offset_a1, offset_a2 = k.machine_scale_times_plane, k.offset_a1, k.offset_a2
+        if not are_usable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
@@ -403,18 +236,19 @@ class P2Y(OffsetKinematics):
         return ()
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        """The one branch: see `Mechanism.branches`."""
+        return (self.branch(frame, (), reference),)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        solve = self._one_trusted
-        return solve(frame, signs, reference)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        (x, y, z), _ = frame
+        k = self._constants
+        machine_scale_times_plane, offset_a1, offset_a2 = k.machine_scale_times_plane, k.offset_a1, k.offset_a2
+        # z: a planar machine has none
+        if not (abs(z) <= machine_scale_times_plane):
+            return None
+        a1 = x + y  # a1 and a2 from the x and y equations, linear in both
+        return (a1 + offset_a1, offset_a2 + (y - x))
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -32,64 +32,42 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond, beyond_turn, turn_inside
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.pcc import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    link_length_1: float
-    link_length_2: float
-    offset_a1: float
-    offset_a2: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    single_a1: bool
-    mid_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    single_a2: bool
-    mid_a2: float
-    lower_elbow: float
-    upper_elbow: float
-    unlimited_elbow: bool
-    lowest_elbow: float
-    highest_elbow: float
-    machine_scale: float
-    machine_scale_times_plane: float
-    machine_scale_times_free_angle: float
-    link_length_1_plus_link_length_2: float
-    link_length_1_minus_link_length_2: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        link_length_1, link_length_2, offset_a1 = p["link_length_1"], p["link_length_2"], p["offset_a1"]
+        offset_a2 = p["offset_a2"]
+        self.lowest_a1, self.highest_a1, self.single_a1, self.mid_a1 = machine._window("a1")
+        self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
+        self.lowest_elbow, self.highest_elbow, *_ = machine._window("elbow")
+        machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
+        machine_scale_times_plane = 1e-6 * machine_scale
+        machine_scale_times_free_angle = 1e-11 * machine_scale
+        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        self.link_length_1, self.link_length_2, self.offset_a1 = link_length_1, link_length_2, offset_a1
+        self.offset_a2, self.machine_scale = offset_a2, machine_scale
+        self.machine_scale_times_plane = machine_scale_times_plane
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
+        self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
 
 
 class PCC(OffsetKinematics):
@@ -98,63 +76,25 @@ class PCC(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_PCC"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Inner arm about Z", multi_turn=True),
-        Axis(
-            name="A2", kind="rotary", unit="deg", meaning="Outer arm about Z, its absolute angle",
-            multi_turn=True,
-        ),
+        Axis(name="A2", kind="rotary", unit="deg", meaning="Outer arm about Z, its absolute angle", multi_turn=True),
     )
     PARAMETERS = (
-        Parameter(
-            name="link_length_1", kind="length", unit="u", meaning="Length of the inner arm", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="link_length_2", kind="length", unit="u", meaning="Length of the outer arm", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="offset_a1", kind="angle", unit="deg", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="angle", unit="deg", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="angle", unit="deg", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="angle", unit="deg", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="angle", unit="deg", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="angle", unit="deg", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_elbow", kind="angle", unit="deg",
-            meaning="lower limit of the angle between the arms, both 0: no limit", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_elbow", kind="angle", unit="deg",
-            meaning="upper limit of the angle between the arms, both 0: no limit", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("length", "link_length_1", "Length of the inner arm"),
+        Parameter.of("length", "link_length_2", "Length of the outer arm"),
+        Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_elbow", "lower limit of the angle between the arms, both 0: no limit"),
+        Parameter.of("angle", "upper_elbow", "upper limit of the angle between the arms, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="elbow", kind="branch", branches=("right", "left"), default=1),
@@ -172,9 +112,19 @@ class PCC(OffsetKinematics):
     DISTANCE_AXES = (0, 1)
 
     def __init__(
-        self, *, link_length_1: float, link_length_2: float, offset_a1: float = 0.0, offset_a2: float = 0.0,
-        lower_a1: float = 0.0, upper_a1: float = 0.0, lower_a2: float = 0.0, upper_a2: float = 0.0,
-        lower_elbow: float = 0.0, upper_elbow: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        link_length_1: float,
+        link_length_2: float,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        lower_elbow: float = 0.0,
+        upper_elbow: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -190,119 +140,26 @@ class PCC(OffsetKinematics):
         upper_elbow: upper limit of the angle between the arms, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            link_length_1, link_length_2, offset_a1, offset_a2, lower_a1, upper_a1, lower_a2, upper_a2, lower_elbow,
-            upper_elbow, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a1=-1e12, lowest_a2=-1e12, lowest_elbow=-1e12, highest_a1=1e12, highest_a2=1e12,
-                highest_elbow=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, link_length_1: float, link_length_2: float, offset_a1: float, offset_a2: float, lower_a1: float,
-        upper_a1: float, lower_a2: float, upper_a2: float, lower_elbow: float, upper_elbow: float,
-        check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (link_length_1 <= 1e9 and link_length_1 > 0.0):
-            raise self._refusal("link_length_1: Length of the inner arm", link_length_1=link_length_1)
-        if not (link_length_2 <= 1e9 and link_length_2 > 0.0):
-            raise self._refusal("link_length_2: Length of the outer arm", link_length_2=link_length_2)
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (lower_elbow >= -1e9 and lower_elbow <= 1e9):
-            raise self._refusal(
-                "lower_elbow: lower limit of the angle between the arms, both 0: no limit", lower_elbow=lower_elbow,
-            )
-        if not (upper_elbow >= -1e9 and upper_elbow <= 1e9):
-            raise self._refusal(
-                "upper_elbow: upper limit of the angle between the arms, both 0: no limit", upper_elbow=upper_elbow,
-            )
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # at most one turn is inside the limits
-        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-        mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # at most one turn is inside the limits
-        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-        mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
-        if not ((lower_elbow < upper_elbow) or (abs(lower_elbow) + abs(upper_elbow) <= 0.0)):
-            raise self._refusal(
-                "lower_elbow below upper_elbow, or both 0", lower_elbow=lower_elbow, upper_elbow=upper_elbow,
-            )
-        unlimited_elbow = abs(lower_elbow) + abs(upper_elbow) <= 0.0  # elbow: whether it has no limits
-        effective_lower_elbow = lower_elbow
-        effective_upper_elbow = upper_elbow
-        tolerance_elbow = 1e-9 + 1e-9*abs(effective_lower_elbow) + 1e-9*abs(effective_upper_elbow)
-        lowest_elbow = -1e12 if unlimited_elbow else effective_lower_elbow - tolerance_elbow
-        highest_elbow = 1e12 if unlimited_elbow else effective_upper_elbow + tolerance_elbow
-        machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
-        machine_scale_times_plane = 1e-6*machine_scale
-        machine_scale_times_free_angle = 1e-11*machine_scale
-        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        return Constants(
-            link_length_1=link_length_1, link_length_2=link_length_2, offset_a1=offset_a1, offset_a2=offset_a2,
-            check_limits=check_limits, lower_a1=effective_lower_a1, upper_a1=effective_upper_a1,
-            unlimited_a1=unlimited_a1, lowest_a1=lowest_a1, highest_a1=highest_a1, single_a1=single_a1, mid_a1=mid_a1,
-            lower_a2=effective_lower_a2, upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2,
-            highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, lower_elbow=effective_lower_elbow,
-            upper_elbow=effective_upper_elbow, unlimited_elbow=unlimited_elbow, lowest_elbow=lowest_elbow,
-            highest_elbow=highest_elbow, machine_scale=machine_scale,
-            machine_scale_times_plane=machine_scale_times_plane,
-            machine_scale_times_free_angle=machine_scale_times_free_angle,
-            link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
-            link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        x = link_length_1*cos_a1 + link_length_2*cos_a2  # x from the x equation, which is linear in it
+        x = link_length_1 * cos_a1 + link_length_2 * cos_a2  # x from the x equation, which is linear in it
         sin_a1 = sin(a1)
         sin_a2 = sin(a2)
-        y = link_length_1*sin_a1 + link_length_2*sin_a2  # y from the y equation, which is linear in it
+        y = link_length_1 * sin_a1 + link_length_2 * sin_a2  # y from the y equation, which is linear in it
         sin_a2_from_a1 = -sin(a1 - a2)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (sin_a2_from_a1,))
 
@@ -315,7 +172,7 @@ class PCC(OffsetKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -323,78 +180,73 @@ class PCC(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
-            and -1e9 <= ref_a2 <= 1e9
-        ):
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        offset_a1, offset_a2, single_a1, single_a2 = k.offset_a1, k.offset_a2, k.single_a1, k.single_a2
+        if not are_usable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
+        reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2_from_a1 = (
-            (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
+            link_length_1_plus_link_length_2 - reach
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_from_a1 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
+            link_length_1_minus_link_length_2 + reach
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / divisor_of_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             missing = (
-                0.5*(
-                    abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
-                    + abs(link_length_1_plus_link_length_2 - reach) + abs(link_length_1_plus_link_length_2 + reach)
+                0.5
+                * (
+                    abs(link_length_1_minus_link_length_2 - reach)
+                    + abs(link_length_1_minus_link_length_2 + reach)
+                    + abs(link_length_1_plus_link_length_2 - reach)
+                    + abs(link_length_1_plus_link_length_2 + reach)
                 )
-                - link_length_1_plus_link_length_2 - reach
+                - link_length_1_plus_link_length_2
+                - reach
             )
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # sine squared, times the squared scale
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
-            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
-            /divisor_of_cos_a2_from_a1
+            2.0
+            * (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
+            * sigma_elbow
+            / divisor_of_cos_a2_from_a1
         )
         # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
-            arm_across_a1 = link_length_2*sin_a2_from_a1
-            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
-            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
+            arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
+            arm_across_a1 = link_length_2 * sin_a2_from_a1
+            direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+            direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2_from_a1 = arctan2(sin_a2_from_a1 + 0.0, cos_a2_from_a1 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
-        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1)/DEGREE
+        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1) / DEGREE
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -403,95 +255,47 @@ class PCC(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_elbow = k.highest_elbow
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_elbow = k.lowest_elbow
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
-        a1 = DEGREE*(axis_a1 - offset_a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
-        value_elbow = (a2 - a1)/DEGREE  # the angle between the arms
-        # limits of the angle between the arms
-        if not (value_elbow >= lowest_elbow):
-            missing = lowest_elbow - value_elbow
-            if turn := turn_inside(
-                axis_a2,
-                max(lowest_a2, axis_a2 + lowest_elbow - value_elbow),
-                min(highest_a2, axis_a2 + highest_elbow - value_elbow),
-            ):
-                return Diagnosis(
-                    Status.UNREACHABLE,
-                    "the angle between the arms: this turn of A2 is beyond a limit, name one inside [deg]", missing, turn,
-                )
-            if turn := turn_inside(
-                axis_a1,
-                max(lowest_a1, axis_a1 + value_elbow - highest_elbow),
-                min(highest_a1, axis_a1 + value_elbow - lowest_elbow),
-            ):
-                return Diagnosis(
-                    Status.UNREACHABLE,
-                    "the angle between the arms: this turn of A1 is beyond a limit, name one inside [deg]", missing, turn,
-                )
-            return Diagnosis(Status.UNREACHABLE, "the angle between the arms: below its lower limit [deg]", missing)
-        if not (value_elbow <= highest_elbow):
-            missing = value_elbow - highest_elbow
-            if turn := turn_inside(
-                axis_a2,
-                max(lowest_a2, axis_a2 + lowest_elbow - value_elbow),
-                min(highest_a2, axis_a2 + highest_elbow - value_elbow),
-            ):
-                return Diagnosis(
-                    Status.UNREACHABLE,
-                    "the angle between the arms: this turn of A2 is beyond a limit, name one inside [deg]", missing, turn,
-                )
-            if turn := turn_inside(
-                axis_a1,
-                max(lowest_a1, axis_a1 + value_elbow - highest_elbow),
-                min(highest_a1, axis_a1 + value_elbow - lowest_elbow),
-            ):
-                return Diagnosis(
-                    Status.UNREACHABLE,
-                    "the angle between the arms: this turn of A1 is beyond a limit, name one inside [deg]", missing, turn,
-                )
-            return Diagnosis(Status.UNREACHABLE, "the angle between the arms: above its upper limit [deg]", missing)
+        highest_a1, highest_a2, highest_elbow, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_elbow, k.lowest_a1
+        lowest_a2, lowest_elbow, offset_a1, offset_a2 = k.lowest_a2, k.lowest_elbow, k.offset_a1, k.offset_a2
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond_turn("A1", axis_a1, lowest_a1, highest_a1)
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        value_elbow = (a2 - a1) / DEGREE  # the angle between the arms
+        if not lowest_elbow <= value_elbow <= highest_elbow:
+            return beyond(
+                "the angle between the arms",
+                value_elbow,
+                lowest_elbow,
+                highest_elbow,
+                "deg",
+                {
+                    "A2": turn_inside(
+                        axis_a2,
+                        max(lowest_a2, axis_a2 + lowest_elbow - value_elbow),
+                        min(highest_a2, axis_a2 + highest_elbow - value_elbow),
+                    ),
+                    "A1": turn_inside(
+                        axis_a1,
+                        max(lowest_a1, axis_a1 + value_elbow - highest_elbow),
+                        min(highest_a1, axis_a1 + value_elbow - lowest_elbow),
+                    ),
+                },
+            )
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2_from_a1 = -sin(a1 - a2)
         return (sin_a2_from_a1,)
 
@@ -499,27 +303,24 @@ class PCC(OffsetKinematics):
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
         cos_a1 = cos(a1)
         cos_a2 = cos(a2)
-        return ((-link_length_1*sin_a1, -link_length_2*sin_a2), (link_length_1*cos_a1, link_length_2*cos_a2))
+        return ((-link_length_1 * sin_a1, -link_length_2 * sin_a2), (link_length_1 * cos_a1, link_length_2 * cos_a2))
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -528,23 +329,12 @@ class PCC(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_plane = k.machine_scale_times_plane
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
-        ):
+        machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
+        offset_a1, offset_a2, single_a1, single_a2 = k.offset_a1, k.offset_a2, k.single_a1, k.single_a2
+        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(point_z - z) <= machine_scale_times_plane):
@@ -552,56 +342,62 @@ class PCC(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_x = x - point_x  # position of the flange: the point less its offset
         flange_y = y - point_y  # position of the flange: the point less its offset
-        reach = sqrt(flange_x*flange_x + flange_y*flange_y)  # distance that the remaining links must span
+        reach = sqrt(flange_x * flange_x + flange_y * flange_y)  # distance that the remaining links must span
         # law of cosines for a2_from_a1: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2_from_a1 = (
-            (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
+            link_length_1_plus_link_length_2 - reach
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2_from_a1 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
+            link_length_1_minus_link_length_2 + reach
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
         divisor_of_cos_a2_from_a1 = sum_of_cos_a2_from_a1 if sum_of_cos_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) / divisor_of_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
             missing = (
-                0.5*(
-                    abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
-                    + abs(link_length_1_plus_link_length_2 - reach) + abs(link_length_1_plus_link_length_2 + reach)
+                0.5
+                * (
+                    abs(link_length_1_minus_link_length_2 - reach)
+                    + abs(link_length_1_minus_link_length_2 + reach)
+                    + abs(link_length_1_plus_link_length_2 - reach)
+                    + abs(link_length_1_plus_link_length_2 + reach)
                 )
-                - link_length_1_plus_link_length_2 - reach
+                - link_length_1_plus_link_length_2
+                - reach
             )
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # sine squared, times the squared scale
-        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
-            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
-            /divisor_of_cos_a2_from_a1
+            2.0
+            * (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
+            * sigma_elbow
+            / divisor_of_cos_a2_from_a1
         )
         # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
-            arm_across_a1 = link_length_2*sin_a2_from_a1
-            direction_x_a1 = arm_across_a1*flange_y + arm_along_a1*flange_x
-            direction_y_a1 = arm_along_a1*flange_y - arm_across_a1*flange_x
+            arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
+            arm_across_a1 = link_length_2 * sin_a2_from_a1
+            direction_x_a1 = arm_across_a1 * flange_y + arm_along_a1 * flange_x
+            direction_y_a1 = arm_along_a1 * flange_y - arm_across_a1 * flange_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2_from_a1 = arctan2(sin_a2_from_a1 + 0.0, cos_a2_from_a1 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
         # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
-        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1)/DEGREE
+        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1) / DEGREE
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
@@ -610,13 +406,12 @@ class PCC(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2_from_a1 = -sin(a1 - a2)
         return (sin_a2_from_a1,)
 
@@ -631,8 +426,7 @@ class PCC(OffsetKinematics):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

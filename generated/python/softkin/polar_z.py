@@ -32,57 +32,32 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
 from softkin._core import Image, Mechanism, Pose
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
-from softkin._unrolled.polar_z import unrolled
+from softkin._limits import beyond, beyond_turn
+from softkin._scalar import DEGREE, RADIAN, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    offset_c: float
-    offset_r: float
-    offset_z: float
-    check_limits: bool
-    lower_c: float
-    upper_c: float
-    unlimited_c: bool
-    lowest_c: float
-    highest_c: float
-    single_c: bool
-    mid_c: float
-    lower_r: float
-    upper_r: float
-    unlimited_r: bool
-    lowest_r: float
-    highest_r: float
-    lower_z: float
-    upper_z: float
-    unlimited_z: bool
-    lowest_z: float
-    highest_z: float
-    machine_scale: float
-    machine_scale_times_free_angle: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        offset_c, offset_r, offset_z = p["offset_c"], p["offset_r"], p["offset_z"]
+        self.lowest_c, self.highest_c, self.single_c, self.mid_c = machine._window("c")
+        self.lowest_r, self.highest_r, *_ = machine._window("r", (offset_r, 1e9 + offset_r))
+        self.lowest_z, self.highest_z, *_ = machine._window("z")
+        machine_scale = 1.0  # characteristic length of the machine
+        machine_scale_times_free_angle = 1e-11 * machine_scale
+        self.offset_c, self.offset_r, self.offset_z, self.machine_scale = offset_c, offset_r, offset_z, machine_scale
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
 
 
 class PolarZ(Mechanism):
@@ -91,7 +66,7 @@ class PolarZ(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_constants",)
 
     NAME = "Kin_Polar_Z"
     AXES = (
@@ -100,52 +75,18 @@ class PolarZ(Mechanism):
         Axis(name="Z", kind="linear", unit="u", meaning="Lift along Z", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="offset_c", kind="angle", unit="deg", meaning="C: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_r", kind="distance", unit="u", meaning="R: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_z", kind="distance", unit="u", meaning="Z: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_c", kind="angle", unit="deg", meaning="C: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_c", kind="angle", unit="deg", meaning="C: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_r", kind="distance", unit="u",
-            meaning="R: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_r", kind="distance", unit="u",
-            meaning="R: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_z", kind="distance", unit="u", meaning="Z: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_z", kind="distance", unit="u", meaning="Z: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("angle", "offset_c", "C: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_r", "R: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_z", "Z: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_c", "C: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_c", "C: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_r", "R: lower limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "upper_r", "R: upper limit of the axis, both 0: joint value 0 or more"),
+        Parameter.of("distance", "lower_z", "Z: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_z", "Z: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
-    CONFIGURATION = (
-        ConfigurationByte(name="C", kind="period", branches=(), default=0),
-    )
+    CONFIGURATION = (ConfigurationByte(name="C", kind="period", branches=(), default=0),)
     DEFAULT_CONFIGURATION = (0,)
     JACOBIAN_ROWS = ("x", "y", "z")
     MARGINS = ("free_c",)
@@ -157,9 +98,18 @@ class PolarZ(Mechanism):
     DISTANCE_AXES = (0,)
 
     def __init__(
-        self, *, offset_c: float = 0.0, offset_r: float = 0.0, offset_z: float = 0.0, lower_c: float = 0.0,
-        upper_c: float = 0.0, lower_r: float = 0.0, upper_r: float = 0.0, lower_z: float = 0.0,
-        upper_z: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        offset_c: float = 0.0,
+        offset_r: float = 0.0,
+        offset_z: float = 0.0,
+        lower_c: float = 0.0,
+        upper_c: float = 0.0,
+        lower_r: float = 0.0,
+        upper_r: float = 0.0,
+        lower_z: float = 0.0,
+        upper_z: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -174,97 +124,25 @@ class PolarZ(Mechanism):
         upper_z: Z: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            offset_c, offset_r, offset_z, lower_c, upper_c, lower_r, upper_r, lower_z, upper_z, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_c=-1e12, lowest_r=-1e12, lowest_z=-1e12, highest_c=1e12, highest_r=1e12, highest_z=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, offset_c: float, offset_r: float, offset_z: float, lower_c: float, upper_c: float, lower_r: float,
-        upper_r: float, lower_z: float, upper_z: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (offset_c >= -1e9 and offset_c <= 1e9):
-            raise self._refusal("offset_c: C: axis value at the kinematic zero position", offset_c=offset_c)
-        if not (offset_r >= -1e9 and offset_r <= 1e9):
-            raise self._refusal("offset_r: R: axis value at the kinematic zero position", offset_r=offset_r)
-        if not (offset_z >= -1e9 and offset_z <= 1e9):
-            raise self._refusal("offset_z: Z: axis value at the kinematic zero position", offset_z=offset_z)
-        if not (lower_c >= -1e9 and lower_c <= 1e9):
-            raise self._refusal("lower_c: C: lower limit of the axis, both 0: no limit", lower_c=lower_c)
-        if not (upper_c >= -1e9 and upper_c <= 1e9):
-            raise self._refusal("upper_c: C: upper limit of the axis, both 0: no limit", upper_c=upper_c)
-        if not (lower_r >= -1e9 and lower_r <= 1e9):
-            raise self._refusal("lower_r: R: lower limit of the axis, both 0: joint value 0 or more", lower_r=lower_r)
-        if not (upper_r >= -1e9 and upper_r <= 1e9):
-            raise self._refusal("upper_r: R: upper limit of the axis, both 0: joint value 0 or more", upper_r=upper_r)
-        if not (lower_z >= -1e9 and lower_z <= 1e9):
-            raise self._refusal("lower_z: Z: lower limit of the axis, both 0: no limit", lower_z=lower_z)
-        if not (upper_z >= -1e9 and upper_z <= 1e9):
-            raise self._refusal("upper_z: Z: upper limit of the axis, both 0: no limit", upper_z=upper_z)
-        if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
-            raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
-        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: whether it has no limits
-        effective_lower_c = lower_c
-        effective_upper_c = upper_c
-        tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
-        lowest_c = -1e12 if unlimited_c else effective_lower_c - tolerance_c
-        highest_c = 1e12 if unlimited_c else effective_upper_c + tolerance_c
-        # at most one turn is inside the limits
-        single_c = (not unlimited_c) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
-        mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
-        if not ((lower_r < upper_r) or (abs(lower_r) + abs(upper_r) <= 0.0)):
-            raise self._refusal("lower_r below upper_r, or both 0", lower_r=lower_r, upper_r=upper_r)
-        unlimited_r = False  # r: whether it has no limits
-        effective_lower_r = lower_r if abs(lower_r) + abs(upper_r) > 0.0 else offset_r
-        effective_upper_r = upper_r if abs(lower_r) + abs(upper_r) > 0.0 else 1e9 + offset_r
-        tolerance_r = 1e-9 + 1e-9*abs(effective_lower_r) + 1e-9*abs(effective_upper_r)
-        lowest_r = -1e12 if unlimited_r else effective_lower_r - tolerance_r
-        highest_r = 1e12 if unlimited_r else effective_upper_r + tolerance_r
-        if not ((lower_z < upper_z) or (abs(lower_z) + abs(upper_z) <= 0.0)):
-            raise self._refusal("lower_z below upper_z, or both 0", lower_z=lower_z, upper_z=upper_z)
-        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: whether it has no limits
-        effective_lower_z = lower_z
-        effective_upper_z = upper_z
-        tolerance_z = 1e-9 + 1e-9*abs(effective_lower_z) + 1e-9*abs(effective_upper_z)
-        lowest_z = -1e12 if unlimited_z else effective_lower_z - tolerance_z
-        highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
-        machine_scale = 1.0  # characteristic length of the machine
-        machine_scale_times_free_angle = 1e-11*machine_scale
-        return Constants(
-            offset_c=offset_c, offset_r=offset_r, offset_z=offset_z, check_limits=check_limits,
-            lower_c=effective_lower_c, upper_c=effective_upper_c, unlimited_c=unlimited_c, lowest_c=lowest_c,
-            highest_c=highest_c, single_c=single_c, mid_c=mid_c, lower_r=effective_lower_r, upper_r=effective_upper_r,
-            unlimited_r=unlimited_r, lowest_r=lowest_r, highest_r=highest_r, lower_z=effective_lower_z,
-            upper_z=effective_upper_z, unlimited_z=unlimited_z, lowest_z=lowest_z, highest_z=highest_z,
-            machine_scale=machine_scale, machine_scale_times_free_angle=machine_scale_times_free_angle,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_c, axis_r, axis_z = axes
         k = self._constants
-        offset_c = k.offset_c
-        offset_r = k.offset_r
-        offset_z = k.offset_z
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
+        offset_c, offset_r, offset_z = k.offset_c, k.offset_r, k.offset_z
+        if not are_usable(axis_c, axis_r, axis_z):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
         if not (r >= -1e-9 and r <= 1000000001.0):
             return Status.IMPOSSIBLE
-        c = DEGREE*(axis_c - offset_c)
+        c = DEGREE * (axis_c - offset_c)
         cos_c = cos(c)
-        x = r*cos_c
+        x = r * cos_c
         sin_c = sin(c)
-        y = r*sin_c
+        y = r * sin_c
         joint_z = axis_z - offset_z
         return ((x, y, joint_z), ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0)), ())
 
@@ -272,49 +150,42 @@ class PolarZ(Mechanism):
         """The rotation of the frame."""
         axis_c, axis_r, axis_z = axes
         k = self._constants
-        offset_c = k.offset_c
-        offset_r = k.offset_r
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
+        offset_c, offset_r = k.offset_c, k.offset_r
+        if not are_usable(axis_c, axis_r, axis_z):
             return Status.BAD_INPUT
         axis_r_minus_offset_r = axis_r - offset_r
         # R where the machine has no pose
         if not (axis_r_minus_offset_r >= -1e-9 and axis_r_minus_offset_r <= 1000000001.0):
             return Status.IMPOSSIBLE
-        c = DEGREE*(axis_c - offset_c)
+        c = DEGREE * (axis_c - offset_c)
         cos_c = cos(c)
         sin_c = sin(c)
         return ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (turn_c,) = turns
         ref_c, _, _ = reference
         k = self._constants
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_c = k.mid_c
-        offset_c = k.offset_c
-        offset_r = k.offset_r
-        offset_z = k.offset_z
-        single_c = k.single_c
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
+        machine_scale_times_free_angle, mid_c, offset_c = k.machine_scale_times_free_angle, k.mid_c, k.offset_c
+        offset_r, offset_z, single_c = k.offset_r, k.offset_z, k.single_c
+        if not are_usable(x, y, z, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
+        radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
         # in the singularity: the angle of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y
         else:
-            free_c = (ref_c - offset_c)*DEGREE
+            free_c = (ref_c - offset_c) * DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
         open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
-        near_c = 360.0*(turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: whole turns added
+        near_c = 360.0 * (turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0) / DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         axis_r = offset_r + radius_c
@@ -325,60 +196,34 @@ class PolarZ(Mechanism):
         """The test of the limits."""
         axis_c, axis_r, axis_z = axes
         k = self._constants
-        highest_c = k.highest_c
-        highest_r = k.highest_r
-        highest_z = k.highest_z
-        lowest_c = k.lowest_c
-        lowest_r = k.lowest_r
-        lowest_z = k.lowest_z
-        # limits of C
-        if not (axis_c >= lowest_c):
-            missing = lowest_c - axis_c
-            if turn := turn_inside(axis_c, lowest_c, highest_c):
-                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "C: below its lower limit [deg]", missing)
-        if not (axis_c <= highest_c):
-            missing = axis_c - highest_c
-            if turn := turn_inside(axis_c, lowest_c, highest_c):
-                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "C: above its upper limit [deg]", missing)
-        # limits of R
-        if not (axis_r >= lowest_r):
-            missing = lowest_r - axis_r
-            return Diagnosis(Status.UNREACHABLE, "R: below its lower limit [u]", missing)
-        if not (axis_r <= highest_r):
-            missing = axis_r - highest_r
-            return Diagnosis(Status.UNREACHABLE, "R: above its upper limit [u]", missing)
-        # limits of Z
-        if not (axis_z >= lowest_z):
-            missing = lowest_z - axis_z
-            return Diagnosis(Status.UNREACHABLE, "Z: below its lower limit [u]", missing)
-        if not (axis_z <= highest_z):
-            missing = axis_z - highest_z
-            return Diagnosis(Status.UNREACHABLE, "Z: above its upper limit [u]", missing)
+        highest_c, highest_r, highest_z, lowest_c = k.highest_c, k.highest_r, k.highest_z, k.lowest_c
+        lowest_r, lowest_z = k.lowest_r, k.lowest_z
+        if not lowest_c <= axis_c <= highest_c:
+            return beyond_turn("C", axis_c, lowest_c, highest_c)
+        if not lowest_r <= axis_r <= highest_r:
+            return beyond("R", axis_r, lowest_r, highest_r, "u")
+        if not lowest_z <= axis_z <= highest_z:
+            return beyond("Z", axis_z, lowest_z, highest_z, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_c, axis_r, axis_z = axes
         k = self._constants
-        machine_scale = k.machine_scale
-        offset_c = k.offset_c
-        offset_r = k.offset_r
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
+        machine_scale, offset_c, offset_r = k.machine_scale, k.offset_c, k.offset_r
+        if not are_usable(axis_c, axis_r, axis_z):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
         if not (r >= -1e-9 and r <= 1000000001.0):
             return Status.IMPOSSIBLE
-        c = DEGREE*(axis_c - offset_c)
+        c = DEGREE * (axis_c - offset_c)
         cos_c = cos(c)
-        x = r*cos_c
+        x = r * cos_c
         sin_c = sin(c)
-        y = r*sin_c
-        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
-        length_free_c = radius_c/machine_scale
+        y = r * sin_c
+        radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
+        length_free_c = radius_c / machine_scale
         margin_free_c = 1.0 if length_free_c > 1e-11 else 0.0  # 0 where nothing determines the axis, else 1 or -1
         return (margin_free_c,)
 
@@ -386,19 +231,17 @@ class PolarZ(Mechanism):
         """The Jacobian by rows, per radian."""
         axis_c, axis_r, axis_z = axes
         k = self._constants
-        offset_c = k.offset_c
-        offset_r = k.offset_r
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
+        offset_c, offset_r = k.offset_c, k.offset_r
+        if not are_usable(axis_c, axis_r, axis_z):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
         if not (r >= -1e-9 and r <= 1000000001.0):
             return Status.IMPOSSIBLE
-        c = DEGREE*(axis_c - offset_c)
+        c = DEGREE * (axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)
-        return ((-r*sin_c, cos_c, 0.0), (r*cos_c, sin_c, 0.0), (0.0, 0.0, 1.0))
+        return ((-r * sin_c, cos_c, 0.0), (r * cos_c, sin_c, 0.0), (0.0, 0.0, 1.0))
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
@@ -408,21 +251,19 @@ class PolarZ(Mechanism):
         """The twist of the frame by rows, per radian."""
         axis_c, axis_r, axis_z = axes
         k = self._constants
-        offset_c = k.offset_c
-        offset_r = k.offset_r
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
+        offset_c, offset_r = k.offset_c, k.offset_r
+        if not are_usable(axis_c, axis_r, axis_z):
             return Status.BAD_INPUT
         r = axis_r - offset_r
         # R where the machine has no pose
         if not (r >= -1e-9 and r <= 1000000001.0):
             return Status.IMPOSSIBLE
-        c = DEGREE*(axis_c - offset_c)
+        c = DEGREE * (axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)
         return (
-            (-r*sin_c, cos_c, 0.0),
-            (r*cos_c, sin_c, 0.0),
+            (-r * sin_c, cos_c, 0.0),
+            (r * cos_c, sin_c, 0.0),
             (0.0, 0.0, 1.0),
             (0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0),
@@ -430,18 +271,26 @@ class PolarZ(Mechanism):
         )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        """The one branch: see `Mechanism.branches`."""
+        return (self.branch(frame, (), reference),)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        solve = self._one_trusted
-        return solve(frame, signs, reference)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        (x, y, z), _ = frame
+        ref_c, _, _ = 3 * (0.0,) if reference is None else reference
+        k = self._constants
+        machine_scale_times_free_angle, offset_c, offset_r = k.machine_scale_times_free_angle, k.offset_c, k.offset_r
+        offset_z = k.offset_z
+        radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
+        # in the singularity: the angle of the reference
+        if radius_c > machine_scale_times_free_angle:
+            direction_x_c = x
+            direction_y_c = y
+        else:
+            free_c = (ref_c - offset_c) * DEGREE
+            direction_x_c = cos(free_c)
+            direction_y_c = sin(free_c)
+        return (offset_c + arctan2(direction_y_c, direction_x_c) * RADIAN, offset_r + radius_c, offset_z + z)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -33,83 +33,59 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.pos_rrr import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    d1: float
-    a1: float
-    a2: float
-    d3: float
-    a3: float
-    d4: float
-    offset_a1: float
-    offset_a2: float
-    offset_a3: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    single_a1: bool
-    mid_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    single_a2: bool
-    mid_a2: float
-    lower_a3: float
-    upper_a3: float
-    unlimited_a3: bool
-    lowest_a3: float
-    highest_a3: float
-    single_a3: bool
-    mid_a3: float
-    machine_scale: float
-    effective_q3_2: float
-    rounding_q1: float
-    size_q1_for_q3_2: float
-    d4_by_effective_q3_2: float
-    a3_by_effective_q3_2: float
-    a2_squared: float
-    size_q1_for_q3_2_times_rounding: float
-    machine_scale_times_free_angle: float
-    machine_scale_squared_times_plane: float
-    machine_scale_times_rounding: float
-    a2_squared_plus_effective_q3_2_squared: float
-    twice_d3: float
-    a2_plus_effective_q3_2: float
-    a2_minus_effective_q3_2: float
-    a2_times_shortest_link: float
-    twice_a2: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        d1, a1, a2, d3, a3, d4, offset_a1 = p["d1"], p["a1"], p["a2"], p["d3"], p["a3"], p["d4"], p["offset_a1"]
+        offset_a2, offset_a3 = p["offset_a2"], p["offset_a3"]
+        self.lowest_a1, self.highest_a1, self.single_a1, self.mid_a1 = machine._window("a1")
+        self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
+        self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
+        machine_scale = a1 + a2 + a3 + d4  # characteristic length of the machine
+        effective_q3_2 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
+        rounding_q1 = 1e-34 * machine_scale * machine_scale  # rounding error of a squared length
+        size_q1_for_q3_2 = 2.0 * abs(effective_q3_2) * a2
+        d4_by_effective_q3_2 = d4 / effective_q3_2
+        a3_by_effective_q3_2 = a3 / effective_q3_2
+        a2_squared = a2 * a2
+        size_q1_for_q3_2_times_rounding = 1e-12 * size_q1_for_q3_2
+        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
+        machine_scale_times_rounding = 1e-12 * machine_scale
+        a2_squared_plus_effective_q3_2_squared = a2_squared + effective_q3_2 * effective_q3_2
+        twice_d3 = 2.0 * d3
+        a2_plus_effective_q3_2 = a2 + effective_q3_2
+        a2_minus_effective_q3_2 = a2 - effective_q3_2
+        a2_times_shortest_link = 1e-9 * a2
+        twice_a2 = 2.0 * a2
+        self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.offset_a1 = d1, a1, a2, d3, a3, d4, offset_a1
+        self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
+        self.effective_q3_2, self.rounding_q1, self.size_q1_for_q3_2 = effective_q3_2, rounding_q1, size_q1_for_q3_2
+        self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
+        self.a2_squared, self.size_q1_for_q3_2_times_rounding = a2_squared, size_q1_for_q3_2_times_rounding
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
+        self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
+        self.machine_scale_times_rounding = machine_scale_times_rounding
+        self.a2_squared_plus_effective_q3_2_squared, self.twice_d3 = a2_squared_plus_effective_q3_2_squared, twice_d3
+        self.a2_plus_effective_q3_2, self.a2_minus_effective_q3_2 = a2_plus_effective_q3_2, a2_minus_effective_q3_2
+        self.a2_times_shortest_link, self.twice_a2 = a2_times_shortest_link, twice_a2
 
 
 class PosRRR(OffsetKinematics):
@@ -118,7 +94,7 @@ class PosRRR(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
     AXES = (
@@ -127,70 +103,22 @@ class PosRRR(OffsetKinematics):
         Axis(name="A3", kind="rotary", unit="deg", meaning="Axis 3", multi_turn=True),
     )
     PARAMETERS = (
-        Parameter(
-            name="d1", kind="distance", unit="u", meaning="Height of axis A2 above the base", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="a1", kind="distance", unit="u", meaning="Axis A1 to axis A2, forward", low=0.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="a2", kind="length", unit="u", meaning="Upper arm, axis A2 to axis A3", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="d3", kind="distance", unit="u", meaning="How far the forearm is beside the upper arm",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="a3", kind="distance", unit="u", meaning="Axis A3 to the axis of the forearm", low=0.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="d4", kind="length", unit="u", meaning="Forearm, to the flange", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="offset_a1", kind="angle", unit="deg", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="angle", unit="deg", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a3", kind="angle", unit="deg", meaning="A3: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="angle", unit="deg", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="angle", unit="deg", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="angle", unit="deg", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="angle", unit="deg", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a3", kind="angle", unit="deg", meaning="A3: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a3", kind="angle", unit="deg", meaning="A3: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("distance", "d1", "Height of axis A2 above the base"),
+        Parameter.of("distance", "a1", "Axis A1 to axis A2, forward", low=0.0),
+        Parameter.of("length", "a2", "Upper arm, axis A2 to axis A3"),
+        Parameter.of("distance", "d3", "How far the forearm is beside the upper arm"),
+        Parameter.of("distance", "a3", "Axis A3 to the axis of the forearm", low=0.0),
+        Parameter.of("length", "d4", "Forearm, to the flange"),
+        Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a3", "A3: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="arm", kind="branch", branches=("front", "back"), default=1),
@@ -210,10 +138,24 @@ class PosRRR(OffsetKinematics):
     DISTANCE_AXES = (0, 1, 2)
 
     def __init__(
-        self, *, d1: float = 0.0, a1: float = 0.0, a2: float, d3: float = 0.0, a3: float = 0.0, d4: float,
-        offset_a1: float = 0.0, offset_a2: float = 0.0, offset_a3: float = 0.0, lower_a1: float = 0.0,
-        upper_a1: float = 0.0, lower_a2: float = 0.0, upper_a2: float = 0.0, lower_a3: float = 0.0,
-        upper_a3: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        d1: float = 0.0,
+        a1: float = 0.0,
+        a2: float,
+        d3: float = 0.0,
+        a3: float = 0.0,
+        d4: float,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        offset_a3: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        lower_a3: float = 0.0,
+        upper_a3: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -234,170 +176,47 @@ class PosRRR(OffsetKinematics):
         upper_a3: A3: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            d1, a1, a2, d3, a3, d4, offset_a1, offset_a2, offset_a3, lower_a1, upper_a1, lower_a2, upper_a2, lower_a3,
-            upper_a3, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, d1: float, a1: float, a2: float, d3: float, a3: float, d4: float, offset_a1: float,
-        offset_a2: float, offset_a3: float, lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float,
-        lower_a3: float, upper_a3: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (d1 >= -1e9 and d1 <= 1e9):
-            raise self._refusal("d1: Height of axis A2 above the base", d1=d1)
-        if not (a1 >= 0.0 and a1 <= 1e9):
-            raise self._refusal("a1: Axis A1 to axis A2, forward", a1=a1)
-        if not (a2 <= 1e9 and a2 > 0.0):
-            raise self._refusal("a2: Upper arm, axis A2 to axis A3", a2=a2)
-        if not (d3 >= -1e9 and d3 <= 1e9):
-            raise self._refusal("d3: How far the forearm is beside the upper arm", d3=d3)
-        if not (a3 >= 0.0 and a3 <= 1e9):
-            raise self._refusal("a3: Axis A3 to the axis of the forearm", a3=a3)
-        if not (d4 <= 1e9 and d4 > 0.0):
-            raise self._refusal("d4: Forearm, to the flange", d4=d4)
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (offset_a3 >= -1e9 and offset_a3 <= 1e9):
-            raise self._refusal("offset_a3: A3: axis value at the kinematic zero position", offset_a3=offset_a3)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (lower_a3 >= -1e9 and lower_a3 <= 1e9):
-            raise self._refusal("lower_a3: A3: lower limit of the axis, both 0: no limit", lower_a3=lower_a3)
-        if not (upper_a3 >= -1e9 and upper_a3 <= 1e9):
-            raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # at most one turn is inside the limits
-        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-        mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # at most one turn is inside the limits
-        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-        mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
-        if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
-            raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
-        effective_lower_a3 = lower_a3
-        effective_upper_a3 = upper_a3
-        tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # at most one turn is inside the limits
-        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-        mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
-        machine_scale = a1 + a2 + a3 + d4  # characteristic length of the machine
-        effective_q3_2 = sqrt(a3*a3 + d4*d4)  # effective length of the arm that q3 turns
-        rounding_q1 = 1e-34*machine_scale*machine_scale  # rounding error of a squared length
-        size_q1_for_q3_2 = 2.0*abs(effective_q3_2)*a2
-        d4_by_effective_q3_2 = d4/effective_q3_2
-        a3_by_effective_q3_2 = a3/effective_q3_2
-        a2_squared = a2*a2
-        size_q1_for_q3_2_times_rounding = 1e-12*size_q1_for_q3_2
-        machine_scale_times_free_angle = 1e-11*machine_scale
-        machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
-        machine_scale_times_rounding = 1e-12*machine_scale
-        a2_squared_plus_effective_q3_2_squared = a2_squared + effective_q3_2*effective_q3_2
-        twice_d3 = 2.0*d3
-        a2_plus_effective_q3_2 = a2 + effective_q3_2
-        a2_minus_effective_q3_2 = a2 - effective_q3_2
-        a2_times_shortest_link = 1e-9*a2
-        twice_a2 = 2.0*a2
-        return Constants(
-            d1=d1, a1=a1, a2=a2, d3=d3, a3=a3, d4=d4, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
-            check_limits=check_limits, lower_a1=effective_lower_a1, upper_a1=effective_upper_a1,
-            unlimited_a1=unlimited_a1, lowest_a1=lowest_a1, highest_a1=highest_a1, single_a1=single_a1, mid_a1=mid_a1,
-            lower_a2=effective_lower_a2, upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2,
-            highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3,
-            upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
-            single_a3=single_a3, mid_a3=mid_a3, machine_scale=machine_scale, effective_q3_2=effective_q3_2,
-            rounding_q1=rounding_q1, size_q1_for_q3_2=size_q1_for_q3_2, d4_by_effective_q3_2=d4_by_effective_q3_2,
-            a3_by_effective_q3_2=a3_by_effective_q3_2, a2_squared=a2_squared,
-            size_q1_for_q3_2_times_rounding=size_q1_for_q3_2_times_rounding,
-            machine_scale_times_free_angle=machine_scale_times_free_angle,
-            machine_scale_squared_times_plane=machine_scale_squared_times_plane,
-            machine_scale_times_rounding=machine_scale_times_rounding,
-            a2_squared_plus_effective_q3_2_squared=a2_squared_plus_effective_q3_2_squared, twice_d3=twice_d3,
-            a2_plus_effective_q3_2=a2_plus_effective_q3_2, a2_minus_effective_q3_2=a2_minus_effective_q3_2,
-            a2_times_shortest_link=a2_times_shortest_link, twice_a2=twice_a2,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a3 = k.a3
-        a3_by_effective_q3_2 = k.a3_by_effective_q3_2
-        d1 = k.d1
-        d3 = k.d3
-        d4 = k.d4
-        d4_by_effective_q3_2 = k.d4_by_effective_q3_2
-        machine_scale = k.machine_scale
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        a1, a2, a3, a3_by_effective_q3_2, d1, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3_2, k.d1, k.d3, k.d4
+        d4_by_effective_q3_2, machine_scale, offset_a1 = k.d4_by_effective_q3_2, k.machine_scale, k.offset_a1
+        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
-        q2 = DEGREE*(axis_a2 - offset_a2)
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        q2 = DEGREE * (axis_a2 - offset_a2)
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1*sin_q23
+        r11_at_q23 = -cos_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1*cos_q23
-        x_at_q2 = a1*cos_q1
+        r12_at_q23 = -cos_q1 * cos_q23
+        x_at_q2 = a1 * cos_q1
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r11_at_q2
-        x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
-        r21_at_q23 = -sin_q1*sin_q23
-        r22_at_q23 = -cos_q23*sin_q1
-        y_at_q2 = a1*sin_q1
-        r21_at_q2 = -sin_q1*sin_q2
-        y_at_q3 = y_at_q2 + a2*r21_at_q2
-        y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
+        r11_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r11_at_q2
+        x = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1 - d4 * r12_at_q23
+        r21_at_q23 = -sin_q1 * sin_q23
+        r22_at_q23 = -cos_q23 * sin_q1
+        y_at_q2 = a1 * sin_q1
+        r21_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r21_at_q2
+        y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
         cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z = z_at_q3 + a3*cos_q23 + d4*sin_q23
-        branch_arm = (x*cos_q1 + y*sin_q1)/machine_scale
+        z_at_q3 = d1 + a2 * cos_q2
+        z = z_at_q3 + a3 * cos_q23 + d4 * sin_q23
+        branch_arm = (x * cos_q1 + y * sin_q1) / machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = d4_by_effective_q3_2*cos_q3 - a3_by_effective_q3_2*sin_q3
+        branch_elbow = d4_by_effective_q3_2 * cos_q3 - a3_by_effective_q3_2 * sin_q3
         return (
             (x, y, z),
             ((r11_at_q23, sin_q1, -r12_at_q23), (r21_at_q23, -cos_q1, -r22_at_q23), (cos_q23, 0.0, sin_q23)),
@@ -408,28 +227,25 @@ class PosRRR(OffsetKinematics):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         cos_q1 = cos(q1)
-        q2 = DEGREE*(axis_a2 - offset_a2)
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        q2 = DEGREE * (axis_a2 - offset_a2)
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1*sin_q23
+        r11_at_q23 = -cos_q1 * sin_q23
         sin_q1 = sin(q1)
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1*cos_q23
-        r21_at_q23 = -sin_q1*sin_q23
-        r22_at_q23 = -cos_q23*sin_q1
+        r12_at_q23 = -cos_q1 * cos_q23
+        r21_at_q23 = -sin_q1 * sin_q23
+        r22_at_q23 = -cos_q23 * sin_q1
         return ((r11_at_q23, sin_q1, -r12_at_q23), (r21_at_q23, -cos_q1, -r22_at_q23), (cos_q23, 0.0, sin_q23))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -437,56 +253,37 @@ class PosRRR(OffsetKinematics):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a2_minus_effective_q3_2 = k.a2_minus_effective_q3_2
+        a1, a2, a2_minus_effective_q3_2 = k.a1, k.a2, k.a2_minus_effective_q3_2
         a2_plus_effective_q3_2 = k.a2_plus_effective_q3_2
         a2_squared_plus_effective_q3_2_squared = k.a2_squared_plus_effective_q3_2_squared
-        a3_by_effective_q3_2 = k.a3_by_effective_q3_2
-        d1 = k.d1
-        d3 = k.d3
-        d4_by_effective_q3_2 = k.d4_by_effective_q3_2
-        effective_q3_2 = k.effective_q3_2
-        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        a3_by_effective_q3_2, d1, d3, d4_by_effective_q3_2 = k.a3_by_effective_q3_2, k.d1, k.d3, k.d4_by_effective_q3_2
+        effective_q3_2, machine_scale_squared_times_plane = k.effective_q3_2, k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        rounding_q1 = k.rounding_q1
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        size_q1_for_q3_2 = k.size_q1_for_q3_2
-        size_q1_for_q3_2_times_rounding = k.size_q1_for_q3_2_times_rounding
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
+        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
+        size_q1_for_q3_2, size_q1_for_q3_2_times_rounding = k.size_q1_for_q3_2, k.size_q1_for_q3_2_times_rounding
         twice_d3 = k.twice_d3
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
-            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
-        ):
+        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        distance_q1 = sqrt(x*x + y*y)  # distance of the point from the axis of q1
+        distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
-        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
-        distance_q1_squared = distance_q1*distance_q1
+        ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)
+        distance_q1_squared = distance_q1 * distance_q1
         # q1: out of reach
-        if not (ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1):
-            missing = 0.5*(abs(d3 - distance_q1) + abs(d3 + distance_q1)) - distance_q1
+        if not (ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1):
+            missing = 0.5 * (abs(d3 - distance_q1) + abs(d3 + distance_q1)) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
+        wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
+        ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
         # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/distance_q1_squared
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/distance_q1_squared
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - d3 * y) / distance_q1_squared
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + d3 * x) / distance_q1_squared
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
         # turned, within rounding, to where q3 has a solution
@@ -498,7 +295,8 @@ class PosRRR(OffsetKinematics):
             wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
             # q3 has solutions where this is within its bound
             value_q1_for_q3 = (
-                wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+                wrist_y_from_q1_squared
+                + wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
                 - a2_squared_plus_effective_q3_2_squared
             )
             # turned, within rounding, to where q3 has a solution
@@ -507,7 +305,7 @@ class PosRRR(OffsetKinematics):
                 cos_q1 = cos_q1_before_q1_for_q3
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
-                rate_q1_for_q3 = -twice_d3*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
+                rate_q1_for_q3 = -twice_d3 * wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
                 # turn of q1 to the bound, to first order
                 if abs(rate_q1_for_q3) > size_q1_for_q3_2_times_rounding:
                     excess_q1_for_q3 = (
@@ -515,78 +313,84 @@ class PosRRR(OffsetKinematics):
                         if value_q1_for_q3 > 0.0
                         else size_q1_for_q3_2 + value_q1_for_q3
                     )
-                    turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+                    turn_q1_for_q3 = -excess_q1_for_q3 / rate_q1_for_q3
                 else:
                     turn_q1_for_q3 = 0.0
-                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-                one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-                turned_cos_q1_for_q3 = (
-                    one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
+                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3 * turn_q1_for_q3)
+                one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
+                turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                    cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
                 )
-                turned_sin_q1_for_q3 = (
-                    one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
+                turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                    sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
                 )
                 # residual of the equation of q1
-                turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
+                turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3 * y - turned_sin_q1_for_q3 * x)
                 # turned, within rounding, to where q3 has a solution
                 if turned_cost_q1_for_q3 > machine_scale_times_rounding:
                     ahead_q1 = ahead_q1_before_q1_for_q3
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
                 else:
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
+                    turned_ahead_q1_for_q3 = (
+                        ahead_q1_before_q1_for_q3 - d3 * turn_q1_for_q3
+                    ) * one_by_turned_length_q1_for_q3
                     ahead_q1 = turned_ahead_q1_for_q3
                     cos_q1 = turned_cos_q1_for_q3
                     sin_q1 = turned_sin_q1_for_q3
         wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
+        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
-                0.5*(
-                    abs(a2_minus_effective_q3_2 - reach) + abs(a2_minus_effective_q3_2 + reach)
-                    + abs(a2_plus_effective_q3_2 - reach) + abs(a2_plus_effective_q3_2 + reach)
+                0.5
+                * (
+                    abs(a2_minus_effective_q3_2 - reach)
+                    + abs(a2_minus_effective_q3_2 + reach)
+                    + abs(a2_plus_effective_q3_2 - reach)
+                    + abs(a2_plus_effective_q3_2 + reach)
                 )
-                - a2_plus_effective_q3_2 - reach
+                - a2_plus_effective_q3_2
+                - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = -effective_q3_2*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
-            direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+            arm_along_q2 = -effective_q3_2 * sin_swing_q3
+            arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
+            direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
+            direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_q3 = a3_by_effective_q3_2*cos_swing_q3 - d4_by_effective_q3_2*sin_swing_q3
-        sin_q3 = a3_by_effective_q3_2*sin_swing_q3 + d4_by_effective_q3_2*cos_swing_q3
+        cos_q3 = a3_by_effective_q3_2 * cos_swing_q3 - d4_by_effective_q3_2 * sin_swing_q3
+        sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
-        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: whole turns added
+        near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) / DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -595,138 +399,90 @@ class PosRRR(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
-        # limits of A3
-        if not (axis_a3 >= lowest_a3):
-            missing = lowest_a3 - axis_a3
-            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
-                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
-        if not (axis_a3 <= highest_a3):
-            missing = axis_a3 - highest_a3
-            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
-                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
+        highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
+        lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond_turn("A1", axis_a1, lowest_a1, highest_a1)
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
+        if not lowest_a3 <= axis_a3 <= highest_a3:
+            return beyond_turn("A3", axis_a3, lowest_a3, highest_a3)
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a3 = k.a3
-        a3_by_effective_q3_2 = k.a3_by_effective_q3_2
-        d3 = k.d3
-        d4 = k.d4
-        d4_by_effective_q3_2 = k.d4_by_effective_q3_2
-        machine_scale = k.machine_scale
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        a1, a2, a3, a3_by_effective_q3_2, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3_2, k.d3, k.d4
+        d4_by_effective_q3_2, machine_scale, offset_a1 = k.d4_by_effective_q3_2, k.machine_scale, k.offset_a1
+        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
-        x_at_q2 = a1*cos_q1
-        q2 = DEGREE*(axis_a2 - offset_a2)
+        x_at_q2 = a1 * cos_q1
+        q2 = DEGREE * (axis_a2 - offset_a2)
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r11_at_q2
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        r11_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r11_at_q2
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1*sin_q23
+        r11_at_q23 = -cos_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1*cos_q23
-        x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
-        y_at_q2 = a1*sin_q1
-        r21_at_q2 = -sin_q1*sin_q2
-        y_at_q3 = y_at_q2 + a2*r21_at_q2
-        r21_at_q23 = -sin_q1*sin_q23
-        r22_at_q23 = -cos_q23*sin_q1
-        y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
-        margin_point_on_axis_1 = (x*cos_q1 + y*sin_q1)/machine_scale
+        r12_at_q23 = -cos_q1 * cos_q23
+        x = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1 - d4 * r12_at_q23
+        y_at_q2 = a1 * sin_q1
+        r21_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r21_at_q2
+        r21_at_q23 = -sin_q1 * sin_q23
+        r22_at_q23 = -cos_q23 * sin_q1
+        y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
+        margin_point_on_axis_1 = (x * cos_q1 + y * sin_q1) / machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = d4_by_effective_q3_2*cos_q3 - a3_by_effective_q3_2*sin_q3
+        margin_elbow = d4_by_effective_q3_2 * cos_q3 - a3_by_effective_q3_2 * sin_q3
         return (margin_point_on_axis_1, margin_elbow)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a3 = k.a3
-        d1 = k.d1
-        d3 = k.d3
-        d4 = k.d4
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        a1, a2, a3, d1, d3, d4, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.offset_a1, k.offset_a2
         offset_a3 = k.offset_a3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         cos_q1 = cos(q1)
         sin_q1 = sin(q1)
-        y_at_q2 = a1*sin_q1
-        q2 = DEGREE*(axis_a2 - offset_a2)
+        y_at_q2 = a1 * sin_q1
+        q2 = DEGREE * (axis_a2 - offset_a2)
         sin_q2 = sin(q2)
-        r21_at_q2 = -sin_q1*sin_q2
-        y_at_q3 = y_at_q2 + a2*r21_at_q2
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        r21_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r21_at_q2
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         sin_q23 = sin(q2_plus_q3)
-        r21_at_q23 = -sin_q1*sin_q23
+        r21_at_q23 = -sin_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r22_at_q23 = -cos_q23*sin_q1
-        y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
-        x_at_q2 = a1*cos_q1
-        r11_at_q2 = -cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r11_at_q2
-        r11_at_q23 = -cos_q1*sin_q23
-        r12_at_q23 = -cos_q1*cos_q23
-        x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
+        r22_at_q23 = -cos_q23 * sin_q1
+        y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
+        x_at_q2 = a1 * cos_q1
+        r11_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r11_at_q2
+        r11_at_q23 = -cos_q1 * sin_q23
+        r12_at_q23 = -cos_q1 * cos_q23
+        x = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1 - d4 * r12_at_q23
         cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z = z_at_q3 + a3*cos_q23 + d4*sin_q23
+        z_at_q3 = d1 + a2 * cos_q2
+        z = z_at_q3 + a3 * cos_q23 + d4 * sin_q23
         z_minus_d1 = z - d1
         z_minus_z_at_q3 = z - z_at_q3
         return (
-            (-y, -z_minus_d1*cos_q1, -z_minus_z_at_q3*cos_q1),
-            (x, -z_minus_d1*sin_q1, -z_minus_z_at_q3*sin_q1),
-            (0.0, (x - x_at_q2)*cos_q1 + (y - y_at_q2)*sin_q1, (x - x_at_q3)*cos_q1 + (y - y_at_q3)*sin_q1),
+            (-y, -z_minus_d1 * cos_q1, -z_minus_z_at_q3 * cos_q1),
+            (x, -z_minus_d1 * sin_q1, -z_minus_z_at_q3 * sin_q1),
+            (0.0, (x - x_at_q2) * cos_q1 + (y - y_at_q2) * sin_q1, (x - x_at_q3) * cos_q1 + (y - y_at_q3) * sin_q1),
         )
 
     def _image(self) -> Image | Status:
@@ -737,55 +493,47 @@ class PosRRR(OffsetKinematics):
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a3 = k.a3
-        d1 = k.d1
-        d3 = k.d3
-        d4 = k.d4
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        a1, a2, a3, d1, d3, d4, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.offset_a1, k.offset_a2
         offset_a3 = k.offset_a3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         cos_q1 = cos(q1)
         sin_q1 = sin(q1)
-        y_at_q2 = a1*sin_q1
-        q2 = DEGREE*(axis_a2 - offset_a2)
+        y_at_q2 = a1 * sin_q1
+        q2 = DEGREE * (axis_a2 - offset_a2)
         sin_q2 = sin(q2)
-        r21_at_q2 = -sin_q1*sin_q2
-        y_at_q3 = y_at_q2 + a2*r21_at_q2
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        r21_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r21_at_q2
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         sin_q23 = sin(q2_plus_q3)
-        r21_at_q23 = -sin_q1*sin_q23
+        r21_at_q23 = -sin_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r22_at_q23 = -cos_q23*sin_q1
-        y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
-        x_at_q2 = a1*cos_q1
-        r11_at_q2 = -cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r11_at_q2
-        r11_at_q23 = -cos_q1*sin_q23
-        r12_at_q23 = -cos_q1*cos_q23
-        x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
+        r22_at_q23 = -cos_q23 * sin_q1
+        y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
+        x_at_q2 = a1 * cos_q1
+        r11_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r11_at_q2
+        r11_at_q23 = -cos_q1 * sin_q23
+        r12_at_q23 = -cos_q1 * cos_q23
+        x = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1 - d4 * r12_at_q23
         cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z = z_at_q3 + a3*cos_q23 + d4*sin_q23
+        z_at_q3 = d1 + a2 * cos_q2
+        z = z_at_q3 + a3 * cos_q23 + d4 * sin_q23
         z_minus_d1 = z - d1
         z_minus_z_at_q3 = z - z_at_q3
         return (
-            (-y, -z_minus_d1*cos_q1, -z_minus_z_at_q3*cos_q1),
-            (x, -z_minus_d1*sin_q1, -z_minus_z_at_q3*sin_q1),
-            (0.0, (x - x_at_q2)*cos_q1 + (y - y_at_q2)*sin_q1, (x - x_at_q3)*cos_q1 + (y - y_at_q3)*sin_q1),
+            (-y, -z_minus_d1 * cos_q1, -z_minus_z_at_q3 * cos_q1),
+            (x, -z_minus_d1 * sin_q1, -z_minus_z_at_q3 * sin_q1),
+            (0.0, (x - x_at_q2) * cos_q1 + (y - y_at_q2) * sin_q1, (x - x_at_q3) * cos_q1 + (y - y_at_q3) * sin_q1),
             (0.0, sin_q1, sin_q1),
             (0.0, -cos_q1, -cos_q1),
             (1.0, 0.0, 0.0),
         )
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -794,60 +542,40 @@ class PosRRR(OffsetKinematics):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a2_squared = k.a2_squared
-        a2_times_shortest_link = k.a2_times_shortest_link
-        a3 = k.a3
-        d1 = k.d1
-        d3 = k.d3
-        d4 = k.d4
-        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
+        a1, a2, a2_squared, a2_times_shortest_link, a3 = k.a1, k.a2, k.a2_squared, k.a2_times_shortest_link, k.a3
+        d1, d3, d4, machine_scale_squared_times_plane = k.d1, k.d3, k.d4, k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding = k.machine_scale_times_rounding
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        rounding_q1 = k.rounding_q1
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
+        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
         twice_a2 = k.twice_a2
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
-            and -1e9 <= ref_a3 <= 1e9
-        ):
+        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        distance_q1 = sqrt(x*x + y*y)  # distance of the point from the axis of q1
+        distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
         tool_z = d3 + point_y  # commanded point, in the frame of the last moving joint
         # Pythagoras: square of the distance ahead of the axis
-        ahead_squared_q1 = (distance_q1 + tool_z)*(distance_q1 - tool_z)
-        distance_q1_squared = distance_q1*distance_q1
+        ahead_squared_q1 = (distance_q1 + tool_z) * (distance_q1 - tool_z)
+        distance_q1_squared = distance_q1 * distance_q1
         # q1: out of reach
-        if not (ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1):
-            missing = 0.5*(abs(distance_q1 - tool_z) + abs(distance_q1 + tool_z)) - distance_q1
+        if not (ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1):
+            missing = 0.5 * (abs(distance_q1 - tool_z) + abs(distance_q1 + tool_z)) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         tool_x = a3 + point_x  # commanded point, in the frame of the last moving joint
         tool_y = -d4 - point_z  # commanded point, in the frame of the last moving joint
-        effective_q3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length of the arm that q3 turns
+        effective_q3 = sqrt(tool_x * tool_x + tool_y * tool_y)  # effective length of the arm that q3 turns
         # q3: its effective length is too short
         if not (effective_q3 > a2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
+        wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
+        ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
         # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - tool_z*y)/distance_q1_squared
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + tool_z*x)/distance_q1_squared
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - tool_z * y) / distance_q1_squared
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + tool_z * x) / distance_q1_squared
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
         # turned, within rounding, to where q3 has a solution
@@ -859,98 +587,105 @@ class PosRRR(OffsetKinematics):
             wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
             # q3 has solutions where this is within its bound
             value_q1_for_q3 = (
-                wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 - a2_squared
-                - effective_q3*effective_q3
+                wrist_y_from_q1_squared
+                + wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
+                - a2_squared
+                - effective_q3 * effective_q3
             )
-            size_q1_for_q3 = abs(effective_q3)*twice_a2
+            size_q1_for_q3 = abs(effective_q3) * twice_a2
             # turned, within rounding, to where q3 has a solution
             if abs(value_q1_for_q3) <= size_q1_for_q3:
                 ahead_q1 = ahead_q1_before_q1_for_q3
                 cos_q1 = cos_q1_before_q1_for_q3
                 sin_q1 = sin_q1_before_q1_for_q3
             else:
-                rate_q1_for_q3 = -2.0*tool_z*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
+                rate_q1_for_q3 = -2.0 * tool_z * wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
                 # turn of q1 to the bound, to first order
-                if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
+                if abs(rate_q1_for_q3) > 1e-12 * size_q1_for_q3:
                     excess_q1_for_q3 = (
-                        value_q1_for_q3 - size_q1_for_q3
-                        if value_q1_for_q3 > 0.0
-                        else size_q1_for_q3 + value_q1_for_q3
+                        value_q1_for_q3 - size_q1_for_q3 if value_q1_for_q3 > 0.0 else size_q1_for_q3 + value_q1_for_q3
                     )
-                    turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+                    turn_q1_for_q3 = -excess_q1_for_q3 / rate_q1_for_q3
                 else:
                     turn_q1_for_q3 = 0.0
-                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-                one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-                turned_cos_q1_for_q3 = (
-                    one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
+                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3 * turn_q1_for_q3)
+                one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
+                turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                    cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
                 )
-                turned_sin_q1_for_q3 = (
-                    one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
+                turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                    sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
                 )
                 # residual of the equation of q1
-                turned_cost_q1_for_q3 = abs(tool_z + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
+                turned_cost_q1_for_q3 = abs(tool_z + turned_cos_q1_for_q3 * y - turned_sin_q1_for_q3 * x)
                 # turned, within rounding, to where q3 has a solution
                 if turned_cost_q1_for_q3 > machine_scale_times_rounding:
                     ahead_q1 = ahead_q1_before_q1_for_q3
                     cos_q1 = cos_q1_before_q1_for_q3
                     sin_q1 = sin_q1_before_q1_for_q3
                 else:
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - tool_z*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
+                    turned_ahead_q1_for_q3 = (
+                        ahead_q1_before_q1_for_q3 - tool_z * turn_q1_for_q3
+                    ) * one_by_turned_length_q1_for_q3
                     ahead_q1 = turned_ahead_q1_for_q3
                     cos_q1 = turned_cos_q1_for_q3
                     sin_q1 = turned_sin_q1_for_q3
         wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
+        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
         a2_plus_effective_q3 = a2 + effective_q3
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         a2_minus_effective_q3 = a2 - effective_q3
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = sum_of_cos_q3 if sum_of_cos_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             missing = (
-                0.5*(
-                    abs(a2_minus_effective_q3 - reach) + abs(a2_minus_effective_q3 + reach)
-                    + abs(a2_plus_effective_q3 - reach) + abs(a2_plus_effective_q3 + reach)
+                0.5
+                * (
+                    abs(a2_minus_effective_q3 - reach)
+                    + abs(a2_minus_effective_q3 + reach)
+                    + abs(a2_plus_effective_q3 - reach)
+                    + abs(a2_plus_effective_q3 + reach)
                 )
-                - a2 - effective_q3 - reach
+                - a2
+                - effective_q3
+                - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_q3 = (tool_x*cos_swing_q3 + tool_y*sin_swing_q3)/effective_q3
-        sin_q3 = (tool_x*sin_swing_q3 - tool_y*cos_swing_q3)/effective_q3
+        cos_q3 = (tool_x * cos_swing_q3 + tool_y * sin_swing_q3) / effective_q3
+        sin_q3 = (tool_x * sin_swing_q3 - tool_y * cos_swing_q3) / effective_q3
         # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = tool_y*cos_q3 + tool_x*sin_q3
-            arm_across_q2 = a2 + tool_x*cos_q3 - tool_y*sin_q3
-            direction_x_q2 = arm_across_q2*wrist_y_from_q1 - arm_along_q2*wrist_x_from_q1
-            direction_y_q2 = -arm_across_q2*wrist_x_from_q1 - arm_along_q2*wrist_y_from_q1
+            arm_along_q2 = tool_y * cos_q3 + tool_x * sin_q3
+            arm_across_q2 = a2 + tool_x * cos_q3 - tool_y * sin_q3
+            direction_x_q2 = arm_across_q2 * wrist_y_from_q1 - arm_along_q2 * wrist_x_from_q1
+            direction_y_q2 = -arm_across_q2 * wrist_x_from_q1 - arm_along_q2 * wrist_y_from_q1
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
-        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: whole turns added
+        near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) / DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -960,50 +695,39 @@ class PosRRR(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         point_x, point_y, point_z = offset
         k = self._constants
-        a1 = k.a1
-        a2 = k.a2
-        a3 = k.a3
-        d3 = k.d3
-        d4 = k.d4
-        machine_scale = k.machine_scale
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= axis_a1 <= 1e9
-            and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9
-        ):
+        a1, a2, a3, d3, d4, machine_scale, offset_a1 = k.a1, k.a2, k.a3, k.d3, k.d4, k.machine_scale, k.offset_a1
+        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        if not are_usable(point_x, point_y, point_z, axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        q1 = DEGREE*(axis_a1 - offset_a1)
+        q1 = DEGREE * (axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
-        q2 = DEGREE*(axis_a2 - offset_a2)
-        q3 = DEGREE*(axis_a3 - offset_a3)
+        q2 = DEGREE * (axis_a2 - offset_a2)
+        q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1*sin_q23
+        r11_at_q23 = -cos_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1*cos_q23
-        x_at_q2 = a1*cos_q1
+        r12_at_q23 = -cos_q1 * cos_q23
+        x_at_q2 = a1 * cos_q1
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r11_at_q2
-        flange_x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
-        x = flange_x + point_x*r11_at_q23 + point_y*sin_q1 - point_z*r12_at_q23
-        r21_at_q23 = -sin_q1*sin_q23
-        r22_at_q23 = -cos_q23*sin_q1
-        y_at_q2 = a1*sin_q1
-        r21_at_q2 = -sin_q1*sin_q2
-        y_at_q3 = y_at_q2 + a2*r21_at_q2
-        flange_y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
-        y = flange_y + point_x*r21_at_q23 - point_y*cos_q1 - point_z*r22_at_q23
-        branch_arm = (x*cos_q1 + y*sin_q1)/machine_scale
+        r11_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r11_at_q2
+        flange_x = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1 - d4 * r12_at_q23
+        x = flange_x + point_x * r11_at_q23 + point_y * sin_q1 - point_z * r12_at_q23
+        r21_at_q23 = -sin_q1 * sin_q23
+        r22_at_q23 = -cos_q23 * sin_q1
+        y_at_q2 = a1 * sin_q1
+        r21_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r21_at_q2
+        flange_y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
+        y = flange_y + point_x * r21_at_q23 - point_y * cos_q1 - point_z * r22_at_q23
+        branch_arm = (x * cos_q1 + y * sin_q1) / machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
         tool_x = a3 + point_x  # commanded point, in the frame of the last moving joint
         tool_y = -d4 - point_z  # commanded point, in the frame of the last moving joint
-        branch_elbow = (-tool_y*cos_q3 - tool_x*sin_q3)/machine_scale
+        branch_elbow = (-tool_y * cos_q3 - tool_x * sin_q3) / machine_scale
         return (branch_arm, branch_elbow)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -1018,8 +742,7 @@ class PosRRR(OffsetKinematics):
         return super().branch(frame, signs, reference) if found == () else found  # near a fold with all that it takes
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference) or super()._every_branch(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -35,73 +35,41 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond, beyond_turn
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.scara3_z import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    arm_length_1: float
-    arm_length_2: float
-    arm_length_3: float
-    offset_a1: float
-    offset_a2: float
-    offset_a3: float
-    offset_z: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    single_a1: bool
-    mid_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    single_a2: bool
-    mid_a2: float
-    lower_a3: float
-    upper_a3: float
-    unlimited_a3: bool
-    lowest_a3: float
-    highest_a3: float
-    single_a3: bool
-    mid_a3: float
-    lower_z: float
-    upper_z: float
-    unlimited_z: bool
-    lowest_z: float
-    highest_z: float
-    machine_scale: float
-    machine_scale_times_free_angle: float
-    arm_length_1_plus_arm_length_2: float
-    arm_length_1_minus_arm_length_2: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        arm_length_1, arm_length_2, arm_length_3 = p["arm_length_1"], p["arm_length_2"], p["arm_length_3"]
+        offset_a1, offset_a2, offset_a3, offset_z = p["offset_a1"], p["offset_a2"], p["offset_a3"], p["offset_z"]
+        self.lowest_a1, self.highest_a1, self.single_a1, self.mid_a1 = machine._window("a1")
+        self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
+        self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
+        self.lowest_z, self.highest_z, *_ = machine._window("z")
+        machine_scale = arm_length_1 + arm_length_2 + arm_length_3  # characteristic length of the machine
+        machine_scale_times_free_angle = 1e-11 * machine_scale
+        arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
+        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
+        self.arm_length_1, self.arm_length_2, self.arm_length_3 = arm_length_1, arm_length_2, arm_length_3
+        self.offset_a1, self.offset_a2, self.offset_a3, self.offset_z = offset_a1, offset_a2, offset_a3, offset_z
+        self.machine_scale, self.machine_scale_times_free_angle = machine_scale, machine_scale_times_free_angle
+        self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
+        self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
 
 
 class Scara3Z(TwistChoice):
@@ -110,7 +78,7 @@ class Scara3Z(TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_Z"
     AXES = (
@@ -120,70 +88,22 @@ class Scara3Z(TwistChoice):
         Axis(name="Z", kind="linear", unit="u", meaning="Lift along Z", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="arm_length_1", kind="length", unit="u", meaning="Length of arm 1", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="arm_length_2", kind="length", unit="u", meaning="Length of arm 2", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="arm_length_3", kind="length", unit="u", meaning="Length of arm 3", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="offset_a1", kind="angle", unit="deg", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="angle", unit="deg", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a3", kind="angle", unit="deg", meaning="A3: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_z", kind="distance", unit="u", meaning="Z: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="angle", unit="deg", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="angle", unit="deg", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="angle", unit="deg", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="angle", unit="deg", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a3", kind="angle", unit="deg", meaning="A3: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a3", kind="angle", unit="deg", meaning="A3: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_z", kind="distance", unit="u", meaning="Z: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_z", kind="distance", unit="u", meaning="Z: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("length", "arm_length_1", "Length of arm 1"),
+        Parameter.of("length", "arm_length_2", "Length of arm 2"),
+        Parameter.of("length", "arm_length_3", "Length of arm 3"),
+        Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a3", "A3: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_z", "Z: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_z", "Z: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_z", "Z: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="elbow", kind="branch", branches=("right", "left"), default=1),
@@ -202,10 +122,24 @@ class Scara3Z(TwistChoice):
     DISTANCE_AXES = (0, 1, 2)
 
     def __init__(
-        self, *, arm_length_1: float, arm_length_2: float, arm_length_3: float, offset_a1: float = 0.0,
-        offset_a2: float = 0.0, offset_a3: float = 0.0, offset_z: float = 0.0, lower_a1: float = 0.0,
-        upper_a1: float = 0.0, lower_a2: float = 0.0, upper_a2: float = 0.0, lower_a3: float = 0.0,
-        upper_a3: float = 0.0, lower_z: float = 0.0, upper_z: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        arm_length_1: float,
+        arm_length_2: float,
+        arm_length_3: float,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        offset_a3: float = 0.0,
+        offset_z: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        lower_a3: float = 0.0,
+        upper_a3: float = 0.0,
+        lower_z: float = 0.0,
+        upper_z: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -226,144 +160,31 @@ class Scara3Z(TwistChoice):
         upper_z: Z: upper limit of the axis, both 0: no limit [u]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            arm_length_1, arm_length_2, arm_length_3, offset_a1, offset_a2, offset_a3, offset_z, lower_a1, upper_a1,
-            lower_a2, upper_a2, lower_a3, upper_a3, lower_z, upper_z, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_z=-1e12, highest_a1=1e12, highest_a2=1e12,
-                highest_a3=1e12, highest_z=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, arm_length_1: float, arm_length_2: float, arm_length_3: float, offset_a1: float, offset_a2: float,
-        offset_a3: float, offset_z: float, lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float,
-        lower_a3: float, upper_a3: float, lower_z: float, upper_z: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (arm_length_1 <= 1e9 and arm_length_1 > 0.0):
-            raise self._refusal("arm_length_1: Length of arm 1", arm_length_1=arm_length_1)
-        if not (arm_length_2 <= 1e9 and arm_length_2 > 0.0):
-            raise self._refusal("arm_length_2: Length of arm 2", arm_length_2=arm_length_2)
-        if not (arm_length_3 <= 1e9 and arm_length_3 > 0.0):
-            raise self._refusal("arm_length_3: Length of arm 3", arm_length_3=arm_length_3)
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (offset_a3 >= -1e9 and offset_a3 <= 1e9):
-            raise self._refusal("offset_a3: A3: axis value at the kinematic zero position", offset_a3=offset_a3)
-        if not (offset_z >= -1e9 and offset_z <= 1e9):
-            raise self._refusal("offset_z: Z: axis value at the kinematic zero position", offset_z=offset_z)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (lower_a3 >= -1e9 and lower_a3 <= 1e9):
-            raise self._refusal("lower_a3: A3: lower limit of the axis, both 0: no limit", lower_a3=lower_a3)
-        if not (upper_a3 >= -1e9 and upper_a3 <= 1e9):
-            raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
-        if not (lower_z >= -1e9 and lower_z <= 1e9):
-            raise self._refusal("lower_z: Z: lower limit of the axis, both 0: no limit", lower_z=lower_z)
-        if not (upper_z >= -1e9 and upper_z <= 1e9):
-            raise self._refusal("upper_z: Z: upper limit of the axis, both 0: no limit", upper_z=upper_z)
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # at most one turn is inside the limits
-        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-        mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # at most one turn is inside the limits
-        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-        mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
-        if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
-            raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
-        effective_lower_a3 = lower_a3
-        effective_upper_a3 = upper_a3
-        tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # at most one turn is inside the limits
-        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-        mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
-        if not ((lower_z < upper_z) or (abs(lower_z) + abs(upper_z) <= 0.0)):
-            raise self._refusal("lower_z below upper_z, or both 0", lower_z=lower_z, upper_z=upper_z)
-        unlimited_z = abs(lower_z) + abs(upper_z) <= 0.0  # z: whether it has no limits
-        effective_lower_z = lower_z
-        effective_upper_z = upper_z
-        tolerance_z = 1e-9 + 1e-9*abs(effective_lower_z) + 1e-9*abs(effective_upper_z)
-        lowest_z = -1e12 if unlimited_z else effective_lower_z - tolerance_z
-        highest_z = 1e12 if unlimited_z else effective_upper_z + tolerance_z
-        machine_scale = arm_length_1 + arm_length_2 + arm_length_3  # characteristic length of the machine
-        machine_scale_times_free_angle = 1e-11*machine_scale
-        arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
-        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
-        return Constants(
-            arm_length_1=arm_length_1, arm_length_2=arm_length_2, arm_length_3=arm_length_3, offset_a1=offset_a1,
-            offset_a2=offset_a2, offset_a3=offset_a3, offset_z=offset_z, check_limits=check_limits,
-            lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
-            highest_a1=highest_a1, single_a1=single_a1, mid_a1=mid_a1, lower_a2=effective_lower_a2,
-            upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2,
-            single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3, upper_a3=effective_upper_a3,
-            unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3, single_a3=single_a3, mid_a3=mid_a3,
-            lower_z=effective_lower_z, upper_z=effective_upper_z, unlimited_z=unlimited_z, lowest_z=lowest_z,
-            highest_z=highest_z, machine_scale=machine_scale,
-            machine_scale_times_free_angle=machine_scale_times_free_angle,
-            arm_length_1_plus_arm_length_2=arm_length_1_plus_arm_length_2,
-            arm_length_1_minus_arm_length_2=arm_length_1_minus_arm_length_2,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_z = axes
         k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_2 = k.arm_length_2
-        arm_length_3 = k.arm_length_3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_z = k.offset_z
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
-        ):
+        arm_length_1, arm_length_2, arm_length_3 = k.arm_length_1, k.arm_length_2, k.arm_length_3
+        offset_a1, offset_a2, offset_a3, offset_z = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_z
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_z):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         a1_plus_a2 = a1 + a2
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        a3 = DEGREE * (axis_a3 - offset_a3)
         a1_plus_a2_plus_a3 = a1_plus_a2 + a3
         cos_a123 = cos(a1_plus_a2_plus_a3)
         cos_a1 = cos(a1)
         cos_a12 = cos(a1_plus_a2)
-        x = arm_length_1*cos_a1 + arm_length_2*cos_a12 + arm_length_3*cos_a123
+        x = arm_length_1 * cos_a1 + arm_length_2 * cos_a12 + arm_length_3 * cos_a123
         sin_a123 = sin(a1_plus_a2_plus_a3)
         sin_a1 = sin(a1)
         sin_a12 = sin(a1_plus_a2)
-        y = arm_length_1*sin_a1 + arm_length_2*sin_a12 + arm_length_3*sin_a123
+        y = arm_length_1 * sin_a1 + arm_length_2 * sin_a12 + arm_length_3 * sin_a123
         joint_z = axis_z - offset_z
         sin_a2 = sin(a2)
         return ((x, y, joint_z), ((cos_a123, -sin_a123, 0.0), (sin_a123, cos_a123, 0.0), (0.0, 0.0, 1.0)), (sin_a2,))
@@ -372,24 +193,19 @@ class Scara3Z(TwistChoice):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3, axis_z = axes
         k = self._constants
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
-        ):
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_z):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a3 = DEGREE * (axis_a3 - offset_a3)
         a1_plus_a2_plus_a3 = a1 + a2 + a3
         cos_a123 = cos(a1_plus_a2_plus_a3)
         sin_a123 = sin(a1_plus_a2_plus_a3)
         return ((cos_a123, -sin_a123, 0.0), (sin_a123, cos_a123, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -398,87 +214,77 @@ class Scara3Z(TwistChoice):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3, _ = reference
         k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
-        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
-        arm_length_2 = k.arm_length_2
-        arm_length_3 = k.arm_length_3
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_z = k.offset_z
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
+        arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
+        arm_length_1_plus_arm_length_2, arm_length_2 = k.arm_length_1_plus_arm_length_2, k.arm_length_2
+        arm_length_3, machine_scale_times_free_angle = k.arm_length_3, k.machine_scale_times_free_angle
+        mid_a1, mid_a2, mid_a3, offset_a1, offset_a2 = k.mid_a1, k.mid_a2, k.mid_a3, k.offset_a1, k.offset_a2
+        offset_a3, offset_z, single_a1, single_a2 = k.offset_a3, k.offset_z, k.single_a1, k.single_a2
         single_a3 = k.single_a3
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
-            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
-        ):
+        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
-        cos_heading = heading_along/heading_length
-        wrist_x = x - arm_length_3*cos_heading  # coordinate of the point that the remaining links must reach
-        sin_heading = heading_across/heading_length
-        wrist_y = y - arm_length_3*sin_heading  # coordinate of the point that the remaining links must reach
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
+        cos_heading = heading_along / heading_length
+        wrist_x = x - arm_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
+        sin_heading = heading_across / heading_length
+        wrist_y = y - arm_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
         # law of cosines for a2: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)
+        one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach) * (arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
+        one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
-                0.5*(
-                    abs(arm_length_1_minus_arm_length_2 - reach) + abs(arm_length_1_minus_arm_length_2 + reach)
-                    + abs(arm_length_1_plus_arm_length_2 - reach) + abs(arm_length_1_plus_arm_length_2 + reach)
+                0.5
+                * (
+                    abs(arm_length_1_minus_arm_length_2 - reach)
+                    + abs(arm_length_1_minus_arm_length_2 + reach)
+                    + abs(arm_length_1_plus_arm_length_2 - reach)
+                    + abs(arm_length_1_plus_arm_length_2 + reach)
                 )
-                - arm_length_1_plus_arm_length_2 - reach
+                - arm_length_1_plus_arm_length_2
+                - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
         # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1 = arm_length_2*sin_a2
-            direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
-            direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
+            arm_along_a1 = arm_length_1 + arm_length_2 * cos_a2
+            arm_across_a1 = arm_length_2 * sin_a2
+            direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
+            direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + angle_a2 / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
-        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
+        near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
-        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2)/DEGREE
+        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2) / DEGREE
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         axis_z = offset_z + z
@@ -488,54 +294,16 @@ class Scara3Z(TwistChoice):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3, axis_z = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        highest_z = k.highest_z
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        lowest_z = k.lowest_z
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
-        # limits of A3
-        if not (axis_a3 >= lowest_a3):
-            missing = lowest_a3 - axis_a3
-            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
-                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
-        if not (axis_a3 <= highest_a3):
-            missing = axis_a3 - highest_a3
-            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
-                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
-        # limits of Z
-        if not (axis_z >= lowest_z):
-            missing = lowest_z - axis_z
-            return Diagnosis(Status.UNREACHABLE, "Z: below its lower limit [u]", missing)
-        if not (axis_z <= highest_z):
-            missing = axis_z - highest_z
-            return Diagnosis(Status.UNREACHABLE, "Z: above its upper limit [u]", missing)
+        highest_a1, highest_a2, highest_a3, highest_z = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_z
+        lowest_a1, lowest_a2, lowest_a3, lowest_z = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_z
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond_turn("A1", axis_a1, lowest_a1, highest_a1)
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
+        if not lowest_a3 <= axis_a3 <= highest_a3:
+            return beyond_turn("A3", axis_a3, lowest_a3, highest_a3)
+        if not lowest_z <= axis_z <= highest_z:
+            return beyond("Z", axis_z, lowest_z, highest_z, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
@@ -543,12 +311,9 @@ class Scara3Z(TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_z = axes
         k = self._constants
         offset_a2 = k.offset_a2
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
-        ):
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_z):
             return Status.BAD_INPUT
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
         return (sin_a2,)
 
@@ -556,35 +321,28 @@ class Scara3Z(TwistChoice):
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_z = axes
         k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_2 = k.arm_length_2
-        arm_length_3 = k.arm_length_3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
-        ):
+        arm_length_1, arm_length_2, arm_length_3 = k.arm_length_1, k.arm_length_2, k.arm_length_3
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_z):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         cos_a1 = cos(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         a1_plus_a2 = a1 + a2
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        a3 = DEGREE * (axis_a3 - offset_a3)
         a1_plus_a2_plus_a3 = a1_plus_a2 + a3
         cos_a123 = cos(a1_plus_a2_plus_a3)
-        arm_length_3_times_cos_a123 = arm_length_3*cos_a123
+        arm_length_3_times_cos_a123 = arm_length_3 * cos_a123
         sin_a123 = sin(a1_plus_a2_plus_a3)
-        arm_length_3_times_sin_a123 = arm_length_3*sin_a123
+        arm_length_3_times_sin_a123 = arm_length_3 * sin_a123
         sin_a12 = sin(a1_plus_a2)
-        part = arm_length_3_times_sin_a123 + arm_length_2*sin_a12
+        part = arm_length_3_times_sin_a123 + arm_length_2 * sin_a12
         cos_a12 = cos(a1_plus_a2)
-        part_2 = arm_length_3_times_cos_a123 + arm_length_2*cos_a12
+        part_2 = arm_length_3_times_cos_a123 + arm_length_2 * cos_a12
         return (
-            (-part - arm_length_1*sin_a1, -part, -arm_length_3_times_sin_a123, 0.0),
-            (part_2 + arm_length_1*cos_a1, part_2, arm_length_3_times_cos_a123, 0.0),
+            (-part - arm_length_1 * sin_a1, -part, -arm_length_3_times_sin_a123, 0.0),
+            (part_2 + arm_length_1 * cos_a1, part_2, arm_length_3_times_cos_a123, 0.0),
             (0.0, 0.0, 0.0, 1.0),
             (1.0, 1.0, 1.0, 0.0),
         )
@@ -597,35 +355,28 @@ class Scara3Z(TwistChoice):
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_z = axes
         k = self._constants
-        arm_length_1 = k.arm_length_1
-        arm_length_2 = k.arm_length_2
-        arm_length_3 = k.arm_length_3
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
-        ):
+        arm_length_1, arm_length_2, arm_length_3 = k.arm_length_1, k.arm_length_2, k.arm_length_3
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_z):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         cos_a1 = cos(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         a1_plus_a2 = a1 + a2
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        a3 = DEGREE * (axis_a3 - offset_a3)
         a1_plus_a2_plus_a3 = a1_plus_a2 + a3
         cos_a123 = cos(a1_plus_a2_plus_a3)
-        arm_length_3_times_cos_a123 = arm_length_3*cos_a123
+        arm_length_3_times_cos_a123 = arm_length_3 * cos_a123
         sin_a123 = sin(a1_plus_a2_plus_a3)
-        arm_length_3_times_sin_a123 = arm_length_3*sin_a123
+        arm_length_3_times_sin_a123 = arm_length_3 * sin_a123
         sin_a12 = sin(a1_plus_a2)
-        part = arm_length_3_times_sin_a123 + arm_length_2*sin_a12
+        part = arm_length_3_times_sin_a123 + arm_length_2 * sin_a12
         cos_a12 = cos(a1_plus_a2)
-        part_2 = arm_length_3_times_cos_a123 + arm_length_2*cos_a12
+        part_2 = arm_length_3_times_cos_a123 + arm_length_2 * cos_a12
         return (
-            (-part - arm_length_1*sin_a1, -part, -arm_length_3_times_sin_a123, 0.0),
-            (part_2 + arm_length_1*cos_a1, part_2, arm_length_3_times_cos_a123, 0.0),
+            (-part - arm_length_1 * sin_a1, -part, -arm_length_3_times_sin_a123, 0.0),
+            (part_2 + arm_length_1 * cos_a1, part_2, arm_length_3_times_cos_a123, 0.0),
             (0.0, 0.0, 0.0, 1.0),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
@@ -638,12 +389,12 @@ class Scara3Z(TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        cos_heading = heading_along/heading_length
-        sin_heading = heading_across/heading_length
+        cos_heading = heading_along / heading_length
+        sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -657,8 +408,7 @@ class Scara3Z(TwistChoice):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -33,76 +33,48 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.scara4_zccoupled_type1 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    link_length_1: float
-    link_length_2: float
-    pitch_zc: float
-    offset_a1: float
-    offset_a2: float
-    offset_a3: float
-    offset_a4: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    single_a1: bool
-    mid_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    single_a2: bool
-    mid_a2: float
-    lower_a3: float
-    upper_a3: float
-    unlimited_a3: bool
-    lowest_a3: float
-    highest_a3: float
-    lower_a4: float
-    upper_a4: float
-    unlimited_a4: bool
-    lowest_a4: float
-    highest_a4: float
-    single_a4: bool
-    mid_a4: float
-    machine_scale: float
-    part_of_z: float
-    machine_scale_times_free_angle: float
-    link_length_1_plus_link_length_2: float
-    link_length_1_minus_link_length_2: float
-    link_length_1_times_shortest_link: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        link_length_1, link_length_2, pitch_zc = p["link_length_1"], p["link_length_2"], p["pitch_zc"]
+        offset_a1, offset_a2, offset_a3, offset_a4 = p["offset_a1"], p["offset_a2"], p["offset_a3"], p["offset_a4"]
+        self.lowest_a1, self.highest_a1, self.single_a1, self.mid_a1 = machine._window("a1")
+        self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
+        self.lowest_a3, self.highest_a3, *_ = machine._window("a3")
+        self.lowest_a4, self.highest_a4, self.single_a4, self.mid_a4 = machine._window(
+            "a4", (-720.0, 720.0) if abs(pitch_zc) > 0.0 else None
+        )
+        machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
+        part_of_z = pitch_zc / (360.0 * DEGREE)
+        machine_scale_times_free_angle = 1e-11 * machine_scale
+        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+        link_length_1_times_shortest_link = 1e-9 * link_length_1
+        self.link_length_1, self.link_length_2, self.pitch_zc = link_length_1, link_length_2, pitch_zc
+        self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
+        self.machine_scale, self.part_of_z = machine_scale, part_of_z
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
+        self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
+        self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
 
 
 class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
@@ -111,7 +83,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCcoupled_Type1"
     AXES = (
@@ -121,73 +93,40 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         Axis(name="A4", kind="helical", unit="deg", meaning="Quill about Z", multi_turn=True),
     )
     PARAMETERS = (
-        Parameter(
-            name="link_length_1", kind="length", unit="u", meaning="Length of link 1, axis A1 to axis A2",
-            low=0.0, high=800.0, low_is_open=True, default=None,
+        Parameter.of("length", "link_length_1", "Length of link 1, axis A1 to axis A2", high=800.0),
+        Parameter.of("length", "link_length_2", "Length of link 2, axis A2 to axis A4", high=800.0),
+        Parameter.of(
+            "pitch",
+            "pitch_zc",
+            "Travel of the quill per clockwise turn of A4, downward negative",
+            low=-200.0,
+            high=200.0,
         ),
-        Parameter(
-            name="link_length_2", kind="length", unit="u", meaning="Length of link 2, axis A2 to axis A4",
-            low=0.0, high=800.0, low_is_open=True, default=None,
+        Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position", low=-360.0, high=360.0),
+        Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position", low=-360.0, high=360.0),
+        Parameter.of("distance", "offset_a3", "A3: axis value at the kinematic zero position", low=-400.0, high=400.0),
+        Parameter.of("angle", "offset_a4", "A4: axis value at the kinematic zero position", low=-720.0, high=720.0),
+        Parameter.of("angle", "lower_a1", "A1: lower limit of the axis, both 0: no limit", low=-360.0, high=360.0),
+        Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit", low=-360.0, high=360.0),
+        Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit", low=-360.0, high=360.0),
+        Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit", low=-360.0, high=360.0),
+        Parameter.of("distance", "lower_a3", "A3: lower limit of the axis, both 0: no limit", low=-400.0, high=400.0),
+        Parameter.of("distance", "upper_a3", "A3: upper limit of the axis, both 0: no limit", low=-400.0, high=400.0),
+        Parameter.of(
+            "angle",
+            "lower_a4",
+            "A4: lower limit of the axis, both 0: no limit, but -720 .. 720 with a pitch",
+            low=-720.0,
+            high=720.0,
         ),
-        Parameter(
-            name="pitch_zc", kind="pitch", unit="u/rev",
-            meaning="Travel of the quill per clockwise turn of A4, downward negative", low=-200.0, high=200.0,
-            low_is_open=False, default=0.0,
+        Parameter.of(
+            "angle",
+            "upper_a4",
+            "A4: upper limit of the axis, both 0: no limit, but -720 .. 720 with a pitch",
+            low=-720.0,
+            high=720.0,
         ),
-        Parameter(
-            name="offset_a1", kind="angle", unit="deg", meaning="A1: axis value at the kinematic zero position",
-            low=-360.0, high=360.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="angle", unit="deg", meaning="A2: axis value at the kinematic zero position",
-            low=-360.0, high=360.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a3", kind="distance", unit="u", meaning="A3: axis value at the kinematic zero position",
-            low=-400.0, high=400.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a4", kind="angle", unit="deg", meaning="A4: axis value at the kinematic zero position",
-            low=-720.0, high=720.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="angle", unit="deg", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-360.0, high=360.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="angle", unit="deg", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-360.0, high=360.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="angle", unit="deg", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-360.0, high=360.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="angle", unit="deg", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-360.0, high=360.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a3", kind="distance", unit="u", meaning="A3: lower limit of the axis, both 0: no limit",
-            low=-400.0, high=400.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a3", kind="distance", unit="u", meaning="A3: upper limit of the axis, both 0: no limit",
-            low=-400.0, high=400.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a4", kind="angle", unit="deg",
-            meaning="A4: lower limit of the axis, both 0: no limit, but -720 .. 720 with a pitch", low=-720.0,
-            high=720.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a4", kind="angle", unit="deg",
-            meaning="A4: upper limit of the axis, both 0: no limit, but -720 .. 720 with a pitch", low=-720.0,
-            high=720.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="elbow", kind="branch", branches=("right", "left"), default=1),
@@ -206,10 +145,24 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
     DISTANCE_AXES = (0, 1, 3)
 
     def __init__(
-        self, *, link_length_1: float, link_length_2: float, pitch_zc: float = 0.0, offset_a1: float = 0.0,
-        offset_a2: float = 0.0, offset_a3: float = 0.0, offset_a4: float = 0.0, lower_a1: float = 0.0,
-        upper_a1: float = 0.0, lower_a2: float = 0.0, upper_a2: float = 0.0, lower_a3: float = 0.0,
-        upper_a3: float = 0.0, lower_a4: float = 0.0, upper_a4: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        link_length_1: float,
+        link_length_2: float,
+        pitch_zc: float = 0.0,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        offset_a3: float = 0.0,
+        offset_a4: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        lower_a3: float = 0.0,
+        upper_a3: float = 0.0,
+        lower_a4: float = 0.0,
+        upper_a4: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -230,163 +183,30 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 with a pitch [deg]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            link_length_1, link_length_2, pitch_zc, offset_a1, offset_a2, offset_a3, offset_a4, lower_a1, upper_a1,
-            lower_a2, upper_a2, lower_a3, upper_a3, lower_a4, upper_a4, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, highest_a1=1e12, highest_a2=1e12,
-                highest_a3=1e12, highest_a4=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, link_length_1: float, link_length_2: float, pitch_zc: float, offset_a1: float, offset_a2: float,
-        offset_a3: float, offset_a4: float, lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float,
-        lower_a3: float, upper_a3: float, lower_a4: float, upper_a4: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (link_length_1 <= 800.0 and link_length_1 > 0.0):
-            raise self._refusal("link_length_1: Length of link 1, axis A1 to axis A2", link_length_1=link_length_1)
-        if not (link_length_2 <= 800.0 and link_length_2 > 0.0):
-            raise self._refusal("link_length_2: Length of link 2, axis A2 to axis A4", link_length_2=link_length_2)
-        if not (pitch_zc >= -200.0 and pitch_zc <= 200.0):
-            raise self._refusal(
-                "pitch_zc: Travel of the quill per clockwise turn of A4, downward negative", pitch_zc=pitch_zc,
-            )
-        if not (offset_a1 >= -360.0 and offset_a1 <= 360.0):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -360.0 and offset_a2 <= 360.0):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (offset_a3 >= -400.0 and offset_a3 <= 400.0):
-            raise self._refusal("offset_a3: A3: axis value at the kinematic zero position", offset_a3=offset_a3)
-        if not (offset_a4 >= -720.0 and offset_a4 <= 720.0):
-            raise self._refusal("offset_a4: A4: axis value at the kinematic zero position", offset_a4=offset_a4)
-        if not (lower_a1 >= -360.0 and lower_a1 <= 360.0):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -360.0 and upper_a1 <= 360.0):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -360.0 and lower_a2 <= 360.0):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -360.0 and upper_a2 <= 360.0):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (lower_a3 >= -400.0 and lower_a3 <= 400.0):
-            raise self._refusal("lower_a3: A3: lower limit of the axis, both 0: no limit", lower_a3=lower_a3)
-        if not (upper_a3 >= -400.0 and upper_a3 <= 400.0):
-            raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
-        if not (lower_a4 >= -720.0 and lower_a4 <= 720.0):
-            raise self._refusal(
-                "lower_a4: A4: lower limit of the axis, both 0: no limit, but -720 .. 720 with a pitch",
-                lower_a4=lower_a4,
-            )
-        if not (upper_a4 >= -720.0 and upper_a4 <= 720.0):
-            raise self._refusal(
-                "upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 with a pitch",
-                upper_a4=upper_a4,
-            )
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # at most one turn is inside the limits
-        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-        mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # at most one turn is inside the limits
-        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-        mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
-        if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
-            raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
-        effective_lower_a3 = lower_a3
-        effective_upper_a3 = upper_a3
-        tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
-            raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
-        # a4: whether it has no limits
-        unlimited_a4 = (abs(pitch_zc) <= 0.0) and (abs(lower_a4) + abs(upper_a4) <= 0.0)
-        effective_lower_a4 = (
-            lower_a4
-            if abs(lower_a4) + abs(upper_a4) > 0.0
-            else (-720.0 if abs(pitch_zc) > 0.0 else 0.0)
-        )
-        effective_upper_a4 = (
-            upper_a4
-            if abs(lower_a4) + abs(upper_a4) > 0.0
-            else (720.0 if abs(pitch_zc) > 0.0 else 0.0)
-        )
-        tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
-        lowest_a4 = -1e12 if unlimited_a4 else effective_lower_a4 - tolerance_a4
-        highest_a4 = 1e12 if unlimited_a4 else effective_upper_a4 + tolerance_a4
-        # at most one turn is inside the limits
-        single_a4 = (not unlimited_a4) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
-        mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
-        machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
-        part_of_z = pitch_zc/(360.0*DEGREE)
-        machine_scale_times_free_angle = 1e-11*machine_scale
-        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        link_length_1_times_shortest_link = 1e-9*link_length_1
-        return Constants(
-            link_length_1=link_length_1, link_length_2=link_length_2, pitch_zc=pitch_zc, offset_a1=offset_a1,
-            offset_a2=offset_a2, offset_a3=offset_a3, offset_a4=offset_a4, check_limits=check_limits,
-            lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
-            highest_a1=highest_a1, single_a1=single_a1, mid_a1=mid_a1, lower_a2=effective_lower_a2,
-            upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2,
-            single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3, upper_a3=effective_upper_a3,
-            unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3, lower_a4=effective_lower_a4,
-            upper_a4=effective_upper_a4, unlimited_a4=unlimited_a4, lowest_a4=lowest_a4, highest_a4=highest_a4,
-            single_a4=single_a4, mid_a4=mid_a4, machine_scale=machine_scale, part_of_z=part_of_z,
-            machine_scale_times_free_angle=machine_scale_times_free_angle,
-            link_length_1_plus_link_length_2=link_length_1_plus_link_length_2,
-            link_length_1_minus_link_length_2=link_length_1_minus_link_length_2,
-            link_length_1_times_shortest_link=link_length_1_times_shortest_link,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        part_of_z = k.part_of_z
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-        ):
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
+        offset_a3, offset_a4, part_of_z = k.offset_a3, k.offset_a4, k.part_of_z
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         a1_plus_a2 = a1 + a2
         cos_a12 = cos(a1_plus_a2)
-        x = link_length_1*cos_a1 + link_length_2*cos_a12
+        x = link_length_1 * cos_a1 + link_length_2 * cos_a12
         sin_a1 = sin(a1)
         sin_a12 = sin(a1_plus_a2)
-        y = link_length_1*sin_a1 + link_length_2*sin_a12
+        y = link_length_1 * sin_a1 + link_length_2 * sin_a12
         a3 = axis_a3 - offset_a3
-        a4 = DEGREE*(axis_a4 - offset_a4)
-        z = a3 - a4*part_of_z
+        a4 = DEGREE * (axis_a4 - offset_a4)
+        z = a3 - a4 * part_of_z
         a1_plus_a2_plus_a4 = a1_plus_a2 + a4
         cos_a124 = cos(a1_plus_a2_plus_a4)
         sin_a124 = sin(a1_plus_a2_plus_a4)
@@ -397,24 +217,19 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         """The rotation of the frame."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a4 = k.offset_a4
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-        ):
+        offset_a1, offset_a2, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a4
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
-        a4 = DEGREE*(axis_a4 - offset_a4)
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a4 = DEGREE * (axis_a4 - offset_a4)
         a1_plus_a2_plus_a4 = a1 + a2 + a4
         cos_a124 = cos(a1_plus_a2_plus_a4)
         sin_a124 = sin(a1_plus_a2_plus_a4)
         return ((cos_a124, -sin_a124, 0.0), (sin_a124, cos_a124, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -423,87 +238,77 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         turn_a4, turn_a1, turn_a2 = turns
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_2 = k.link_length_2
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a4 = k.mid_a4
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        part_of_z = k.part_of_z
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
+        offset_a4, part_of_z, single_a1, single_a2 = k.offset_a4, k.part_of_z, k.single_a1, k.single_a2
         single_a4 = k.single_a4
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
-            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a4 <= 1e9
-        ):
+        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
-        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
+        reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
             missing = (
-                0.5*(
-                    abs(link_length_1_minus_link_length_2 - reach) + abs(link_length_1_minus_link_length_2 + reach)
-                    + abs(link_length_1_plus_link_length_2 - reach) + abs(link_length_1_plus_link_length_2 + reach)
+                0.5
+                * (
+                    abs(link_length_1_minus_link_length_2 - reach)
+                    + abs(link_length_1_minus_link_length_2 + reach)
+                    + abs(link_length_1_plus_link_length_2 - reach)
+                    + abs(link_length_1_plus_link_length_2 + reach)
                 )
-                - link_length_1_plus_link_length_2 - reach
+                - link_length_1_plus_link_length_2
+                - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
         # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
-            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
+            arm_along_a1 = link_length_1 + link_length_2 * cos_a2
+            arm_across_a1 = link_length_2 * sin_a2
+            direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+            direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + angle_a1 / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + angle_a2 / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         angle_heading = arctan2(heading_across + 0.0, heading_along + 0.0)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
-        near_a4 = 360.0*(turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
+        near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
-        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE
+        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2) / DEGREE
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
-        a4 = DEGREE*(axis_a4 - offset_a4)  # A4: joint value with its whole turns
-        a3 = z + a4*part_of_z  # a3 from the z equation, which is linear in it
+        a4 = DEGREE * (axis_a4 - offset_a4)  # A4: joint value with its whole turns
+        a3 = z + a4 * part_of_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
@@ -511,54 +316,16 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        highest_a4 = k.highest_a4
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        lowest_a4 = k.lowest_a4
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
-        # limits of A4
-        if not (axis_a4 >= lowest_a4):
-            missing = lowest_a4 - axis_a4
-            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
-                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A4: below its lower limit [deg]", missing)
-        if not (axis_a4 <= highest_a4):
-            missing = axis_a4 - highest_a4
-            if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
-                return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A4: above its upper limit [deg]", missing)
-        # limits of A3
-        if not (axis_a3 >= lowest_a3):
-            missing = lowest_a3 - axis_a3
-            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [u]", missing)
-        if not (axis_a3 <= highest_a3):
-            missing = axis_a3 - highest_a3
-            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [u]", missing)
+        highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+        lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond_turn("A1", axis_a1, lowest_a1, highest_a1)
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
+        if not lowest_a4 <= axis_a4 <= highest_a4:
+            return beyond_turn("A4", axis_a4, lowest_a4, highest_a4)
+        if not lowest_a3 <= axis_a3 <= highest_a3:
+            return beyond("A3", axis_a3, lowest_a3, highest_a3, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
@@ -566,12 +333,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
         offset_a2 = k.offset_a2
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-        ):
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
         return (sin_a2,)
 
@@ -579,28 +343,22 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
         part_of_z = k.part_of_z
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-        ):
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         cos_a1 = cos(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         a1_plus_a2 = a1 + a2
         cos_a12 = cos(a1_plus_a2)
-        cos_a12_times_link_length_2 = link_length_2*cos_a12
+        cos_a12_times_link_length_2 = link_length_2 * cos_a12
         sin_a12 = sin(a1_plus_a2)
-        link_length_2_times_sin_a12 = link_length_2*sin_a12
+        link_length_2_times_sin_a12 = link_length_2 * sin_a12
         return (
-            (-link_length_2_times_sin_a12 - link_length_1*sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
-            (cos_a12_times_link_length_2 + link_length_1*cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
+            (-link_length_2_times_sin_a12 - link_length_1 * sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
+            (cos_a12_times_link_length_2 + link_length_1 * cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
             (0.0, 0.0, 1.0, -part_of_z),
             (1.0, 1.0, 0.0, 1.0),
         )
@@ -613,28 +371,22 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_2 = k.link_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
         part_of_z = k.part_of_z
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-        ):
+        if not are_usable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
         cos_a1 = cos(a1)
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         a1_plus_a2 = a1 + a2
         cos_a12 = cos(a1_plus_a2)
-        cos_a12_times_link_length_2 = link_length_2*cos_a12
+        cos_a12_times_link_length_2 = link_length_2 * cos_a12
         sin_a12 = sin(a1_plus_a2)
-        link_length_2_times_sin_a12 = link_length_2*sin_a12
+        link_length_2_times_sin_a12 = link_length_2 * sin_a12
         return (
-            (-link_length_2_times_sin_a12 - link_length_1*sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
-            (cos_a12_times_link_length_2 + link_length_1*cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
+            (-link_length_2_times_sin_a12 - link_length_1 * sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
+            (cos_a12_times_link_length_2 + link_length_1 * cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
             (0.0, 0.0, 1.0, -part_of_z),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
@@ -647,16 +399,16 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        cos_heading = heading_along/heading_length
-        sin_heading = heading_across/heading_length
+        cos_heading = heading_along / heading_length
+        sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -665,81 +417,71 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         _, turn_a1, turn_a2 = turns
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self._constants
-        link_length_1 = k.link_length_1
-        link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
-        link_length_2 = k.link_length_2
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        offset_a4 = k.offset_a4
-        part_of_z = k.part_of_z
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
-            and -1e9 <= ref_a4 <= 1e9
-        ):
+        link_length_1, link_length_1_times_shortest_link = k.link_length_1, k.link_length_1_times_shortest_link
+        link_length_2, machine_scale_times_free_angle = k.link_length_2, k.machine_scale_times_free_angle
+        mid_a1, mid_a2, offset_a1, offset_a2, offset_a3 = k.mid_a1, k.mid_a2, k.offset_a1, k.offset_a2, k.offset_a3
+        offset_a4, part_of_z, single_a1, single_a2 = k.offset_a4, k.part_of_z, k.single_a1, k.single_a2
+        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        free_a4 = (ref_a4 - offset_a4)*DEGREE
+        free_a4 = (ref_a4 - offset_a4) * DEGREE
         cos_a4 = cos(free_a4)
         sin_a4 = sin(free_a4)
         # commanded point, in the frame of the last moving joint
-        tool_x = link_length_2 + point_x*cos_a4 - point_y*sin_a4
-        tool_y = point_y*cos_a4 + point_x*sin_a4  # commanded point, in the frame of the last moving joint
-        effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length of the arm that a2 turns
+        tool_x = link_length_2 + point_x * cos_a4 - point_y * sin_a4
+        tool_y = point_y * cos_a4 + point_x * sin_a4  # commanded point, in the frame of the last moving joint
+        effective_a2 = sqrt(tool_x * tool_x + tool_y * tool_y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
+        reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
         # law of cosines for a2: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach)*(effective_a2 + link_length_1_plus_reach)
+        one_less_cos_a2 = (effective_a2 + link_length_1_minus_reach) * (effective_a2 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2)*(effective_a2 - link_length_1_minus_reach)
+        one_plus_cos_a2 = (link_length_1_plus_reach - effective_a2) * (effective_a2 - link_length_1_minus_reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = (
-                0.5*abs(effective_a2 - link_length_1_minus_reach) + 0.5*abs(effective_a2 + link_length_1_minus_reach)
-                + 0.5*abs(effective_a2 - link_length_1_plus_reach) + 0.5*abs(effective_a2 + link_length_1_plus_reach)
-                - effective_a2 - link_length_1 - reach
+                0.5 * abs(effective_a2 - link_length_1_minus_reach)
+                + 0.5 * abs(effective_a2 + link_length_1_minus_reach)
+                + 0.5 * abs(effective_a2 - link_length_1_plus_reach)
+                + 0.5 * abs(effective_a2 + link_length_1_plus_reach)
+                - effective_a2
+                - link_length_1
+                - reach
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (tool_x*cos_swing_a2 + tool_y*sin_swing_a2)/effective_a2
-        sin_a2 = (tool_x*sin_swing_a2 - tool_y*cos_swing_a2)/effective_a2
+        cos_a2 = (tool_x * cos_swing_a2 + tool_y * sin_swing_a2) / effective_a2
+        sin_a2 = (tool_x * sin_swing_a2 - tool_y * cos_swing_a2) / effective_a2
         # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
-            arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
-            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
-            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
+            arm_along_a1 = link_length_1 + tool_x * cos_a2 - tool_y * sin_a2
+            arm_across_a1 = tool_y * cos_a2 + tool_x * sin_a2
+            direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+            direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            free_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0) / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        tool_z = point_z - free_a4*part_of_z  # commanded point, in the frame of the last moving joint
+        tool_z = point_z - free_a4 * part_of_z  # commanded point, in the frame of the last moving joint
         a3 = z - tool_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, ref_a4)
@@ -749,26 +491,20 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         point_x, point_y, _ = offset
         k = self._constants
-        link_length_2 = k.link_length_2
-        machine_scale = k.machine_scale
-        offset_a2 = k.offset_a2
-        offset_a4 = k.offset_a4
+        link_length_2, machine_scale, offset_a2, offset_a4 = k.link_length_2, k.machine_scale, k.offset_a2, k.offset_a4
         # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9
-            and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
-        ):
+        if not are_usable(point_x, point_y, axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
-        a4 = DEGREE*(axis_a4 - offset_a4)
+        a4 = DEGREE * (axis_a4 - offset_a4)
         sin_a4 = sin(a4)
         cos_a4 = cos(a4)
         # commanded point, in the frame of the last moving joint
-        tool_x = link_length_2 + point_x*cos_a4 - point_y*sin_a4
-        tool_y = point_y*cos_a4 + point_x*sin_a4  # commanded point, in the frame of the last moving joint
-        branch_elbow = (tool_y*cos_a2 + tool_x*sin_a2)/machine_scale
+        tool_x = link_length_2 + point_x * cos_a4 - point_y * sin_a4
+        tool_y = point_y * cos_a4 + point_x * sin_a4  # commanded point, in the frame of the last moving joint
+        branch_elbow = (tool_y * cos_a2 + tool_x * sin_a2) / machine_scale
         return (branch_elbow,)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -782,8 +518,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -24,38 +24,28 @@ Verified at 6 poses, before it was written, by a witness that knows the closure 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
-from softkin._scalar import sqrt
-from softkin._types import (
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
-from softkin._unrolled.tool import unrolled
+from softkin._scalar import are_usable, sqrt
+from softkin._types import Diagnosis, Parameter, Status
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    tool_x: float
-    tool_y: float
-    tool_z: float
-    check_limits: bool
-    machine_scale: float
-    unnoticed_shift: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        tool_x, tool_y, tool_z = p["tool_x"], p["tool_y"], p["tool_z"]
+        # offsets up to this are not noticed
+        unnoticed_shift = 1e-9 * abs(tool_x) + 1e-9 * abs(tool_y) + 1e-9 * abs(tool_z)
+        self.tool_x, self.tool_y, self.tool_z, self.unnoticed_shift = tool_x, tool_y, tool_z, unnoticed_shift
 
 
 class Tool(OrientationKinematics):
@@ -64,27 +54,15 @@ class Tool(OrientationKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_constants",)
 
     NAME = "Kin_Tool"
     AXES = ()
     PARAMETERS = (
-        Parameter(
-            name="tool_x", kind="distance", unit="u", meaning="Flange to the tool, along X", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tool_y", kind="distance", unit="u", meaning="Flange to the tool, along Y", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tool_z", kind="distance", unit="u", meaning="Flange to the tool, along Z", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("distance", "tool_x", "Flange to the tool, along X"),
+        Parameter.of("distance", "tool_y", "Flange to the tool, along Y"),
+        Parameter.of("distance", "tool_z", "Flange to the tool, along Z"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = ()
     DEFAULT_CONFIGURATION = ()
@@ -98,7 +76,7 @@ class Tool(OrientationKinematics):
     DISTANCE_AXES = ()
 
     def __init__(
-        self, *, tool_x: float = 0.0, tool_y: float = 0.0, tool_z: float = 0.0, check_limits: bool = True,
+        self, *, tool_x: float = 0.0, tool_y: float = 0.0, tool_z: float = 0.0, check_limits: bool = True
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -107,31 +85,13 @@ class Tool(OrientationKinematics):
         tool_z: Flange to the tool, along Z [u]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(tool_x, tool_y, tool_z, check_limits)
-        self._constants = self._setup(*values)
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(self._constants)
-
-    def _setup(self, tool_x: float, tool_y: float, tool_z: float, check_limits: bool) -> Constants:
-        """The constants of the machine."""
-        if not (tool_x >= -1e9 and tool_x <= 1e9):
-            raise self._refusal("tool_x: Flange to the tool, along X", tool_x=tool_x)
-        if not (tool_y >= -1e9 and tool_y <= 1e9):
-            raise self._refusal("tool_y: Flange to the tool, along Y", tool_y=tool_y)
-        if not (tool_z >= -1e9 and tool_z <= 1e9):
-            raise self._refusal("tool_z: Flange to the tool, along Z", tool_z=tool_z)
-        machine_scale = 1.0  # characteristic length of the machine
-        unnoticed_shift = 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)  # offsets up to this are not noticed
-        return Constants(
-            tool_x=tool_x, tool_y=tool_y, tool_z=tool_z, check_limits=check_limits, machine_scale=machine_scale,
-            unnoticed_shift=unnoticed_shift,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         k = self._constants
-        tool_x = k.tool_x
-        tool_y = k.tool_y
-        tool_z = k.tool_z
+        tool_x, tool_y, tool_z = k.tool_x, k.tool_y, k.tool_z
         return ((tool_x, tool_y, tool_z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ())
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
@@ -139,7 +99,7 @@ class Tool(OrientationKinematics):
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         return ()
@@ -164,22 +124,19 @@ class Tool(OrientationKinematics):
         """Whether a flange that turns can carry this."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         k = self._constants
-        tool_x = k.tool_x
-        tool_y = k.tool_y
-        tool_z = k.tool_z
-        unnoticed_shift = k.unnoticed_shift
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
+        tool_x, tool_y, tool_z, unnoticed_shift = k.tool_x, k.tool_y, k.tool_z, k.unnoticed_shift
+        if not are_usable(flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         # the flange's part along the axis about which the flange turns
-        flange_along = flange_axis_x*tool_x + flange_axis_y*tool_y + flange_axis_z*tool_z
-        part_of_flange_offset = tool_x - flange_along*flange_axis_x
-        part_of_flange_offset_2 = tool_y - flange_along*flange_axis_y
-        part_of_flange_offset_3 = tool_z - flange_along*flange_axis_z
+        flange_along = flange_axis_x * tool_x + flange_axis_y * tool_y + flange_axis_z * tool_z
+        part_of_flange_offset = tool_x - flange_along * flange_axis_x
+        part_of_flange_offset_2 = tool_y - flange_along * flange_axis_y
+        part_of_flange_offset_3 = tool_z - flange_along * flange_axis_z
         # distance of the flange's part from the axis about which the flange turns
         flange_offset = sqrt(
-            part_of_flange_offset*part_of_flange_offset + part_of_flange_offset_2*part_of_flange_offset_2
-            + part_of_flange_offset_3*part_of_flange_offset_3
+            part_of_flange_offset * part_of_flange_offset
+            + part_of_flange_offset_2 * part_of_flange_offset_2
+            + part_of_flange_offset_3 * part_of_flange_offset_3
         )
         # a part of the end point turns with the flange
         if not (flange_offset <= unnoticed_shift):
@@ -191,29 +148,19 @@ class Tool(OrientationKinematics):
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self._constants
-        tool_x = k.tool_x
-        tool_y = k.tool_y
-        tool_z = k.tool_z
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
-            and -1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9
-        ):
+        tool_x, tool_y, tool_z = k.tool_x, k.tool_y, k.tool_z
+        if not are_usable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         # the flange's part along the axis about which the flange turns
-        flange_along = flange_axis_x*tool_x + flange_axis_y*tool_y + flange_axis_z*tool_z
-        return (base_axis_x*flange_along, base_axis_y*flange_along, base_axis_z*flange_along)
+        flange_along = flange_axis_x * tool_x + flange_axis_y * tool_y + flange_axis_z * tool_z
+        return (base_axis_x * flange_along, base_axis_y * flange_along, base_axis_z * flange_along)
 
     def _total_image(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> TotalImage | Status:
         """The orientations on a flange, and how far the two axes are apart."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
-            and -1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9
-        ):
+        if not are_usable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         return (
             ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)),
@@ -223,18 +170,12 @@ class Tool(OrientationKinematics):
         )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        """The one branch: see `Mechanism.branches`."""
+        return (self.branch(frame, (), reference),)
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        solve = self._one_trusted
-        return solve(frame, signs, reference)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return ()
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

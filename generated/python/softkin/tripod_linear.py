@@ -33,96 +33,102 @@ Verified at 120 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from softkin._configuration import Criterion
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, root, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.tripod_linear import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    outer_radius: float
-    inner_radius: float
-    arm_length: float
-    rail_angle: float
-    max_angle_ball_joint: float
-    offset_a1: float
-    offset_a2: float
-    offset_a3: float
-    tcp_below: bool
-    min_type2_margin: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    lower_a3: float
-    upper_a3: float
-    unlimited_a3: bool
-    lowest_a3: float
-    highest_a3: float
-    machine_scale: float
-    tie: float
-    sin_rail_angle: float
-    cos_rail_angle: float
-    assembly_sign: float
-    sin_max_angle_ball_joint: float
-    part_of_normal_divisor: float
-    arm_length_squared: float
-    arm_length_squared_times_rounding: float
-    part_of_pivot_2_y: float
-    part_of_pivot_2_y_2: float
-    inner_radius_minus_outer_radius: float
-    half_sin_rail_angle: float
-    part_of_pivot_2_x: float
-    sin_rail_angle_times_root_of_3: float
-    twice_cos_rail_angle: float
-    half_by_arm_length: float
-    one_by_arm_length: float
-    sin_rail_angle_times_half_by_arm_length: float
-    cos_rail_angle_by_arm_length: float
-    part_of_branch_carriage_2: float
-    part_of_radicand_a1: float
-    cos_rail_angle_squared: float
-    part_of_radicand_a2: float
-    part_of_radicand_a2_2: float
-    cos_rail_angle_times_sin_rail_angle: float
-    sin_rail_angle_squared_times_1_by_4: float
-    part_of_type2_rods_coplanar: float
-    root_of_3_times_half_by_arm_length: float
-    one_minus_sin_rail_angle_squared: float
-    part_of_radicand_a2_3: float
-    part_of_margin_rods_coplanar: float
-    part_of_determinant_divisor: float
-    twice_sin_rail_angle: float
-    part_of_slope_1_by_x: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        outer_radius, inner_radius, arm_length = p["outer_radius"], p["inner_radius"], p["arm_length"]
+        rail_angle, max_angle_ball_joint, offset_a1 = p["rail_angle"], p["max_angle_ball_joint"], p["offset_a1"]
+        offset_a2, offset_a3, tcp_below = p["offset_a2"], p["offset_a3"], bool(p["tcp_below"])
+        min_type2_margin = p["min_type2_margin"]
+        if not ((rail_angle > 0.0) or (abs(inner_radius - outer_radius) < arm_length)):
+            raise machine._refusal(
+                "the rods must be able to reach the plate", "outer_radius", "inner_radius", "arm_length", "rail_angle"
+            )
+        self.lowest_a1, self.highest_a1, *_ = machine._window("a1")
+        self.lowest_a2, self.highest_a2, *_ = machine._window("a2")
+        self.lowest_a3, self.highest_a3, *_ = machine._window("a3")
+        machine_scale = arm_length + inner_radius + outer_radius  # characteristic length of the machine
+        tie = 1e-12 * machine_scale * machine_scale  # squared distances closer than this are equal
+        sin_rail_angle = sin(DEGREE * rail_angle)
+        cos_rail_angle = cos(DEGREE * rail_angle)
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = -1.0 if tcp_below else 1.0
+        sin_max_angle_ball_joint = sin(DEGREE * max_angle_ball_joint)
+        part_of_normal_divisor = 1e-22 * arm_length * arm_length * arm_length * arm_length
+        arm_length_squared = arm_length * arm_length
+        arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
+        root_of_3 = root(3.0)
+        part_of_pivot_2_y = 0.5 * root_of_3 * sin_rail_angle
+        part_of_pivot_2_y_2 = 0.5 * inner_radius * root_of_3 - 0.5 * outer_radius * root_of_3
+        inner_radius_minus_outer_radius = inner_radius - outer_radius
+        half_sin_rail_angle = 0.5 * sin_rail_angle
+        part_of_pivot_2_x = 0.5 * outer_radius - 0.5 * inner_radius
+        sin_rail_angle_times_root_of_3 = root_of_3 * sin_rail_angle
+        twice_cos_rail_angle = 2.0 * cos_rail_angle
+        half_by_arm_length = 0.5 / arm_length
+        one_by_arm_length = 1.0 / arm_length
+        sin_rail_angle_times_half_by_arm_length = 0.5 * sin_rail_angle / arm_length
+        cos_rail_angle_by_arm_length = cos_rail_angle / arm_length
+        part_of_branch_carriage_2 = 0.5 * root_of_3 * sin_rail_angle / arm_length
+        part_of_radicand_a1 = 2.0 * cos_rail_angle * sin_rail_angle
+        cos_rail_angle_squared = cos_rail_angle * cos_rail_angle
+        part_of_radicand_a2 = root_of_3 * cos_rail_angle * sin_rail_angle
+        part_of_radicand_a2_2 = 0.5 * root_of_3 * sin_rail_angle * sin_rail_angle
+        cos_rail_angle_times_sin_rail_angle = cos_rail_angle * sin_rail_angle
+        sin_rail_angle_squared_times_1_by_4 = 0.25 * sin_rail_angle * sin_rail_angle
+        part_of_type2_rods_coplanar = assembly_sign / (arm_length * arm_length * arm_length)
+        root_of_3_times_half_by_arm_length = 0.5 * root_of_3 / arm_length
+        one_minus_sin_rail_angle_squared = 1.0 - sin_rail_angle * sin_rail_angle
+        part_of_radicand_a2_3 = 1.0 - 0.75 * sin_rail_angle * sin_rail_angle
+        part_of_margin_rods_coplanar = arm_length * arm_length * arm_length
+        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        twice_sin_rail_angle = 2.0 * sin_rail_angle
+        part_of_slope_1_by_x = 2.0 * inner_radius - 2.0 * outer_radius
+        self.outer_radius, self.inner_radius, self.arm_length = outer_radius, inner_radius, arm_length
+        self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
+        self.min_type2_margin, self.tie, self.sin_rail_angle = min_type2_margin, tie, sin_rail_angle
+        self.cos_rail_angle, self.assembly_sign = cos_rail_angle, assembly_sign
+        self.sin_max_angle_ball_joint, self.part_of_normal_divisor = sin_max_angle_ball_joint, part_of_normal_divisor
+        self.arm_length_squared = arm_length_squared
+        self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
+        self.part_of_pivot_2_y, self.part_of_pivot_2_y_2 = part_of_pivot_2_y, part_of_pivot_2_y_2
+        self.inner_radius_minus_outer_radius = inner_radius_minus_outer_radius
+        self.half_sin_rail_angle, self.part_of_pivot_2_x = half_sin_rail_angle, part_of_pivot_2_x
+        self.sin_rail_angle_times_root_of_3 = sin_rail_angle_times_root_of_3
+        self.twice_cos_rail_angle, self.half_by_arm_length = twice_cos_rail_angle, half_by_arm_length
+        self.one_by_arm_length = one_by_arm_length
+        self.sin_rail_angle_times_half_by_arm_length = sin_rail_angle_times_half_by_arm_length
+        self.cos_rail_angle_by_arm_length = cos_rail_angle_by_arm_length
+        self.part_of_branch_carriage_2, self.part_of_radicand_a1 = part_of_branch_carriage_2, part_of_radicand_a1
+        self.cos_rail_angle_squared, self.part_of_radicand_a2 = cos_rail_angle_squared, part_of_radicand_a2
+        self.part_of_radicand_a2_2 = part_of_radicand_a2_2
+        self.cos_rail_angle_times_sin_rail_angle = cos_rail_angle_times_sin_rail_angle
+        self.sin_rail_angle_squared_times_1_by_4 = sin_rail_angle_squared_times_1_by_4
+        self.part_of_type2_rods_coplanar = part_of_type2_rods_coplanar
+        self.root_of_3_times_half_by_arm_length = root_of_3_times_half_by_arm_length
+        self.one_minus_sin_rail_angle_squared = one_minus_sin_rail_angle_squared
+        self.part_of_radicand_a2_3 = part_of_radicand_a2_3
+        self.part_of_margin_rods_coplanar = part_of_margin_rods_coplanar
+        self.part_of_determinant_divisor, self.twice_sin_rail_angle = part_of_determinant_divisor, twice_sin_rail_angle
+        self.part_of_slope_1_by_x = part_of_slope_1_by_x
 
 
 class TripodLinear(OffsetKinematics):
@@ -131,96 +137,50 @@ class TripodLinear(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Linear"
     AXES = (
-        Axis(
-            name="A1", kind="linear", unit="u", meaning="Carriage 1; positive goes down its rail",
-            multi_turn=False,
-        ),
-        Axis(
-            name="A2", kind="linear", unit="u", meaning="Carriage 2; positive goes down its rail",
-            multi_turn=False,
-        ),
-        Axis(
-            name="A3", kind="linear", unit="u", meaning="Carriage 3; positive goes down its rail",
-            multi_turn=False,
-        ),
+        Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1; positive goes down its rail", multi_turn=False),
+        Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2; positive goes down its rail", multi_turn=False),
+        Axis(name="A3", kind="linear", unit="u", meaning="Carriage 3; positive goes down its rail", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="outer_radius", kind="length", unit="u",
-            meaning="Radius of the circle of the points A, where the rail axes meet the XY plane", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
+        Parameter.of(
+            "length", "outer_radius", "Radius of the circle of the points A, where the rail axes meet the XY plane"
         ),
-        Parameter(
-            name="inner_radius", kind="distance", unit="u", meaning="Plate centre to the rod joints", low=0.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="arm_length", kind="length", unit="u", meaning="Length of the rods", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="rail_angle", kind="angle", unit="deg",
-            meaning="Angle of the rails to the vertical, outward going down", low=0.0, high=90.0,
-            low_is_open=False, default=None,
-        ),
-        Parameter(
-            name="max_angle_ball_joint", kind="angle", unit="deg",
-            meaning="Largest swing of a rod out of the plane of its rail", low=0.0, high=90.0, low_is_open=False,
+        Parameter.of("distance", "inner_radius", "Plate centre to the rod joints", low=0.0),
+        Parameter.of("length", "arm_length", "Length of the rods"),
+        Parameter.of(
+            "angle",
+            "rail_angle",
+            "Angle of the rails to the vertical, outward going down",
+            low=0.0,
+            high=90.0,
             default=None,
         ),
-        Parameter(
-            name="offset_a1", kind="distance", unit="u", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+        Parameter.of(
+            "angle",
+            "max_angle_ball_joint",
+            "Largest swing of a rod out of the plane of its rail",
+            low=0.0,
+            high=90.0,
+            default=None,
         ),
-        Parameter(
-            name="offset_a2", kind="distance", unit="u", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+        Parameter.of("distance", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_a3", "A3: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "tcp_below", "assembly mode: below instead of above"),
+        Parameter.of(
+            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
         ),
-        Parameter(
-            name="offset_a3", kind="distance", unit="u", meaning="A3: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="distance", unit="u", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="distance", unit="u", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="distance", unit="u", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="distance", unit="u", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a3", kind="distance", unit="u", meaning="A3: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a3", kind="distance", unit="u", meaning="A3: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_below", kind="flag", unit="", meaning="assembly mode: below instead of above", low=0.0,
-            high=1.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
-            low_is_open=False, default=0.001,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="carriage_1", kind="branch", branches=("below", "above"), default=1),
@@ -238,10 +198,24 @@ class TripodLinear(OffsetKinematics):
     DISTANCE_AXES = (0, 1, 2)
 
     def __init__(
-        self, *, outer_radius: float, inner_radius: float = 0.0, arm_length: float, rail_angle: float,
-        max_angle_ball_joint: float, offset_a1: float = 0.0, offset_a2: float = 0.0, offset_a3: float = 0.0,
-        lower_a1: float = 0.0, upper_a1: float = 0.0, lower_a2: float = 0.0, upper_a2: float = 0.0,
-        lower_a3: float = 0.0, upper_a3: float = 0.0, tcp_below: bool = False, min_type2_margin: float = 0.001,
+        self,
+        *,
+        outer_radius: float,
+        inner_radius: float = 0.0,
+        arm_length: float,
+        rail_angle: float,
+        max_angle_ball_joint: float,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        offset_a3: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        lower_a3: float = 0.0,
+        upper_a3: float = 0.0,
+        tcp_below: bool = False,
+        min_type2_margin: float = 0.001,
         check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
@@ -264,258 +238,90 @@ class TripodLinear(OffsetKinematics):
         min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            outer_radius, inner_radius, arm_length, rail_angle, max_angle_ball_joint, offset_a1, offset_a2, offset_a3,
-            lower_a1, upper_a1, lower_a2, upper_a2, lower_a3, upper_a3, tcp_below, min_type2_margin, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, outer_radius: float, inner_radius: float, arm_length: float, rail_angle: float,
-        max_angle_ball_joint: float, offset_a1: float, offset_a2: float, offset_a3: float, lower_a1: float,
-        upper_a1: float, lower_a2: float, upper_a2: float, lower_a3: float, upper_a3: float, tcp_below: bool,
-        min_type2_margin: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (outer_radius <= 1e9 and outer_radius > 0.0):
-            raise self._refusal(
-                "outer_radius: Radius of the circle of the points A, where the rail axes meet the XY plane",
-                outer_radius=outer_radius,
-            )
-        if not (inner_radius >= 0.0 and inner_radius <= 1e9):
-            raise self._refusal("inner_radius: Plate centre to the rod joints", inner_radius=inner_radius)
-        if not (arm_length <= 1e9 and arm_length > 0.0):
-            raise self._refusal("arm_length: Length of the rods", arm_length=arm_length)
-        if not (rail_angle >= 0.0 and rail_angle <= 90.0):
-            raise self._refusal(
-                "rail_angle: Angle of the rails to the vertical, outward going down", rail_angle=rail_angle,
-            )
-        if not (max_angle_ball_joint >= 0.0 and max_angle_ball_joint <= 90.0):
-            raise self._refusal(
-                "max_angle_ball_joint: Largest swing of a rod out of the plane of its rail",
-                max_angle_ball_joint=max_angle_ball_joint,
-            )
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (offset_a3 >= -1e9 and offset_a3 <= 1e9):
-            raise self._refusal("offset_a3: A3: axis value at the kinematic zero position", offset_a3=offset_a3)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (lower_a3 >= -1e9 and lower_a3 <= 1e9):
-            raise self._refusal("lower_a3: A3: lower limit of the axis, both 0: no limit", lower_a3=lower_a3)
-        if not (upper_a3 >= -1e9 and upper_a3 <= 1e9):
-            raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
-        if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
-            raise self._refusal(
-                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
-                min_type2_margin=min_type2_margin,
-            )
-        if not ((rail_angle > 0.0) or (abs(inner_radius - outer_radius) < arm_length)):
-            raise self._refusal(
-                "the rods must be able to reach the plate", outer_radius=outer_radius, inner_radius=inner_radius,
-                arm_length=arm_length, rail_angle=rail_angle,
-            )
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
-            raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
-        effective_lower_a3 = lower_a3
-        effective_upper_a3 = upper_a3
-        tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        machine_scale = arm_length + inner_radius + outer_radius  # characteristic length of the machine
-        tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
-        sin_rail_angle = sin(DEGREE*rail_angle)
-        cos_rail_angle = cos(DEGREE*rail_angle)
-        # assembly mode of this machine: the sign of the determinant of its rods
-        assembly_sign = -1.0 if tcp_below else 1.0
-        sin_max_angle_ball_joint = sin(DEGREE*max_angle_ball_joint)
-        part_of_normal_divisor = 1e-22*arm_length*arm_length*arm_length*arm_length
-        arm_length_squared = arm_length*arm_length
-        arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
-        root_of_3 = root(3.0)
-        part_of_pivot_2_y = 0.5*root_of_3*sin_rail_angle
-        part_of_pivot_2_y_2 = 0.5*inner_radius*root_of_3 - 0.5*outer_radius*root_of_3
-        inner_radius_minus_outer_radius = inner_radius - outer_radius
-        half_sin_rail_angle = 0.5*sin_rail_angle
-        part_of_pivot_2_x = 0.5*outer_radius - 0.5*inner_radius
-        sin_rail_angle_times_root_of_3 = root_of_3*sin_rail_angle
-        twice_cos_rail_angle = 2.0*cos_rail_angle
-        half_by_arm_length = 0.5/arm_length
-        one_by_arm_length = 1.0/arm_length
-        sin_rail_angle_times_half_by_arm_length = 0.5*sin_rail_angle/arm_length
-        cos_rail_angle_by_arm_length = cos_rail_angle/arm_length
-        part_of_branch_carriage_2 = 0.5*root_of_3*sin_rail_angle/arm_length
-        part_of_radicand_a1 = 2.0*cos_rail_angle*sin_rail_angle
-        cos_rail_angle_squared = cos_rail_angle*cos_rail_angle
-        part_of_radicand_a2 = root_of_3*cos_rail_angle*sin_rail_angle
-        part_of_radicand_a2_2 = 0.5*root_of_3*sin_rail_angle*sin_rail_angle
-        cos_rail_angle_times_sin_rail_angle = cos_rail_angle*sin_rail_angle
-        sin_rail_angle_squared_times_1_by_4 = 0.25*sin_rail_angle*sin_rail_angle
-        part_of_type2_rods_coplanar = assembly_sign/(arm_length*arm_length*arm_length)
-        root_of_3_times_half_by_arm_length = 0.5*root_of_3/arm_length
-        one_minus_sin_rail_angle_squared = 1.0 - sin_rail_angle*sin_rail_angle
-        part_of_radicand_a2_3 = 1.0 - 0.75*sin_rail_angle*sin_rail_angle
-        part_of_margin_rods_coplanar = arm_length*arm_length*arm_length
-        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
-        twice_sin_rail_angle = 2.0*sin_rail_angle
-        part_of_slope_1_by_x = 2.0*inner_radius - 2.0*outer_radius
-        return Constants(
-            outer_radius=outer_radius, inner_radius=inner_radius, arm_length=arm_length, rail_angle=rail_angle,
-            max_angle_ball_joint=max_angle_ball_joint, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
-            tcp_below=tcp_below, min_type2_margin=min_type2_margin, check_limits=check_limits,
-            lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
-            highest_a1=highest_a1, lower_a2=effective_lower_a2, upper_a2=effective_upper_a2,
-            unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2, lower_a3=effective_lower_a3,
-            upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
-            machine_scale=machine_scale, tie=tie, sin_rail_angle=sin_rail_angle, cos_rail_angle=cos_rail_angle,
-            assembly_sign=assembly_sign, sin_max_angle_ball_joint=sin_max_angle_ball_joint,
-            part_of_normal_divisor=part_of_normal_divisor, arm_length_squared=arm_length_squared,
-            arm_length_squared_times_rounding=arm_length_squared_times_rounding, part_of_pivot_2_y=part_of_pivot_2_y,
-            part_of_pivot_2_y_2=part_of_pivot_2_y_2, inner_radius_minus_outer_radius=inner_radius_minus_outer_radius,
-            half_sin_rail_angle=half_sin_rail_angle, part_of_pivot_2_x=part_of_pivot_2_x,
-            sin_rail_angle_times_root_of_3=sin_rail_angle_times_root_of_3, twice_cos_rail_angle=twice_cos_rail_angle,
-            half_by_arm_length=half_by_arm_length, one_by_arm_length=one_by_arm_length,
-            sin_rail_angle_times_half_by_arm_length=sin_rail_angle_times_half_by_arm_length,
-            cos_rail_angle_by_arm_length=cos_rail_angle_by_arm_length,
-            part_of_branch_carriage_2=part_of_branch_carriage_2, part_of_radicand_a1=part_of_radicand_a1,
-            cos_rail_angle_squared=cos_rail_angle_squared, part_of_radicand_a2=part_of_radicand_a2,
-            part_of_radicand_a2_2=part_of_radicand_a2_2,
-            cos_rail_angle_times_sin_rail_angle=cos_rail_angle_times_sin_rail_angle,
-            sin_rail_angle_squared_times_1_by_4=sin_rail_angle_squared_times_1_by_4,
-            part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
-            root_of_3_times_half_by_arm_length=root_of_3_times_half_by_arm_length,
-            one_minus_sin_rail_angle_squared=one_minus_sin_rail_angle_squared,
-            part_of_radicand_a2_3=part_of_radicand_a2_3, part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
-            part_of_determinant_divisor=part_of_determinant_divisor, twice_sin_rail_angle=twice_sin_rail_angle,
-            part_of_slope_1_by_x=part_of_slope_1_by_x,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        cos_rail_angle = k.cos_rail_angle
-        cos_rail_angle_by_arm_length = k.cos_rail_angle_by_arm_length
-        half_sin_rail_angle = k.half_sin_rail_angle
-        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        one_by_arm_length = k.one_by_arm_length
-        part_of_branch_carriage_2 = k.part_of_branch_carriage_2
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
-        sin_rail_angle = k.sin_rail_angle
+        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
+        half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
+        offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
+        part_of_branch_carriage_2, part_of_normal_divisor = k.part_of_branch_carriage_2, k.part_of_normal_divisor
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        part_of_pivot_2_y_2, sin_rail_angle = k.part_of_pivot_2_y_2, k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y
+        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2
+        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2
         a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1*cos_rail_angle
-        pivot_2_z = -a2*cos_rail_angle
+        pivot_1_z = -a1 * cos_rail_angle
+        pivot_2_z = -a2 * cos_rail_angle
         centre_1_to_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*cos_rail_angle
+        pivot_3_z = -a3 * cos_rail_angle
         centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2: centre about which it swings
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
-                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
-        y = foot_y + height_by_normal*normal_y
-        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        y = foot_y + height_by_normal * normal_y
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        branch_carriage_1 = (a1 + z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
+        branch_carriage_1 = (a1 + z * cos_rail_angle + span_1_x * sin_rail_angle) / arm_length
         span_2_y = y - part_of_pivot_2_y_2
         span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         part_of_branch_carriage_2_2 = (
-            span_2_x*sin_rail_angle_times_half_by_arm_length - z*cos_rail_angle_by_arm_length
+            span_2_x * sin_rail_angle_times_half_by_arm_length - z * cos_rail_angle_by_arm_length
         )
-        branch_carriage_2 = a2*one_by_arm_length + part_of_branch_carriage_2*span_2_y - part_of_branch_carriage_2_2
+        branch_carriage_2 = a2 * one_by_arm_length + part_of_branch_carriage_2 * span_2_y - part_of_branch_carriage_2_2
         span_3_y = part_of_pivot_2_y_2 + y
-        branch_carriage_3 = a3*one_by_arm_length - part_of_branch_carriage_2_2 - part_of_branch_carriage_2*span_3_y
+        branch_carriage_3 = a3 * one_by_arm_length - part_of_branch_carriage_2_2 - part_of_branch_carriage_2 * span_3_y
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -527,243 +333,218 @@ class TripodLinear(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        cos_rail_angle = k.cos_rail_angle
-        half_sin_rail_angle = k.half_sin_rail_angle
-        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
+        arm_length_squared_times_rounding, cos_rail_angle = k.arm_length_squared_times_rounding, k.cos_rail_angle
+        half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
+        part_of_pivot_2_y, part_of_pivot_2_y_2 = k.part_of_pivot_2_y, k.part_of_pivot_2_y_2
         sin_rail_angle = k.sin_rail_angle
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y
+        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2
+        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2
         a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1*cos_rail_angle
-        pivot_2_z = -a2*cos_rail_angle
+        pivot_1_z = -a1 * cos_rail_angle
+        pivot_2_z = -a2 * cos_rail_angle
         centre_1_to_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*cos_rail_angle
+        pivot_3_z = -a3 * cos_rail_angle
         centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2: centre about which it swings
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
-                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        cos_rail_angle = k.cos_rail_angle
+        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared_times_rounding, cos_rail_angle = k.arm_length_squared_times_rounding, k.cos_rail_angle
         cos_rail_angle_squared = k.cos_rail_angle_squared
         cos_rail_angle_times_sin_rail_angle = k.cos_rail_angle_times_sin_rail_angle
-        half_by_arm_length = k.half_by_arm_length
-        half_sin_rail_angle = k.half_sin_rail_angle
-        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        one_minus_sin_rail_angle_squared = k.one_minus_sin_rail_angle_squared
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
-        part_of_radicand_a1 = k.part_of_radicand_a1
-        part_of_radicand_a2 = k.part_of_radicand_a2
-        part_of_radicand_a2_2 = k.part_of_radicand_a2_2
-        part_of_radicand_a2_3 = k.part_of_radicand_a2_3
+        half_by_arm_length, half_sin_rail_angle = k.half_by_arm_length, k.half_sin_rail_angle
+        inner_radius_minus_outer_radius, min_type2_margin = k.inner_radius_minus_outer_radius, k.min_type2_margin
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        one_minus_sin_rail_angle_squared, part_of_pivot_2_x = k.one_minus_sin_rail_angle_squared, k.part_of_pivot_2_x
+        part_of_pivot_2_y, part_of_pivot_2_y_2 = k.part_of_pivot_2_y, k.part_of_pivot_2_y_2
+        part_of_radicand_a1, part_of_radicand_a2 = k.part_of_radicand_a1, k.part_of_radicand_a2
+        part_of_radicand_a2_2, part_of_radicand_a2_3 = k.part_of_radicand_a2_2, k.part_of_radicand_a2_3
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
-        sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
-        sin_rail_angle = k.sin_rail_angle
+        sin_max_angle_ball_joint, sin_rail_angle = k.sin_max_angle_ball_joint, k.sin_rail_angle
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
+        if not are_usable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        z_minus_cos_rail_angle_squared_times_z = z - z*cos_rail_angle_squared
+        z_minus_cos_rail_angle_squared_times_z = z - z * cos_rail_angle_squared
         # quadratic equation for a1: rod 1
         radicand_a1 = (
-            arm_length_squared + (part_of_radicand_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z - y*y
-            - one_minus_sin_rail_angle_squared*span_1_x*span_1_x
+            arm_length_squared
+            + (part_of_radicand_a1 * span_1_x - z_minus_cos_rail_angle_squared_times_z) * z
+            - y * y
+            - one_minus_sin_rail_angle_squared * span_1_x * span_1_x
         )
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    y*y + (z_minus_cos_rail_angle_squared_times_z - part_of_radicand_a1*span_1_x)*z
-                    + one_minus_sin_rail_angle_squared*span_1_x*span_1_x
+                    y * y
+                    + (z_minus_cos_rail_angle_squared_times_z - part_of_radicand_a1 * span_1_x) * z
+                    + one_minus_sin_rail_angle_squared * span_1_x * span_1_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - part_of_pivot_2_y_2
-        part_of_radicand_a2_4 = z_minus_cos_rail_angle_squared_times_z + span_2_x*cos_rail_angle_times_sin_rail_angle
-        part_of_radicand_a2_5 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
+        part_of_radicand_a2_4 = z_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
+        part_of_radicand_a2_5 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
         # quadratic equation for a2: rod 2
         radicand_a2 = (
-            arm_length_squared + (-part_of_radicand_a2_5 - part_of_radicand_a2_2*span_2_y)*span_2_x
-            + (part_of_radicand_a2*span_2_y - part_of_radicand_a2_4)*z - part_of_radicand_a2_3*span_2_y*span_2_y
+            arm_length_squared
+            + (-part_of_radicand_a2_5 - part_of_radicand_a2_2 * span_2_y) * span_2_x
+            + (part_of_radicand_a2 * span_2_y - part_of_radicand_a2_4) * z
+            - part_of_radicand_a2_3 * span_2_y * span_2_y
         )
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (part_of_radicand_a2_5 + part_of_radicand_a2_2*span_2_y)*span_2_x
-                    + (part_of_radicand_a2_4 - part_of_radicand_a2*span_2_y)*z + part_of_radicand_a2_3*span_2_y*span_2_y
+                    (part_of_radicand_a2_5 + part_of_radicand_a2_2 * span_2_y) * span_2_x
+                    + (part_of_radicand_a2_4 - part_of_radicand_a2 * span_2_y) * z
+                    + part_of_radicand_a2_3 * span_2_y * span_2_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_3_y = part_of_pivot_2_y_2 + y
         # quadratic equation for a3: rod 3
         radicand_a3 = (
-            arm_length_squared + (part_of_radicand_a2_2*span_3_y - part_of_radicand_a2_5)*span_2_x
-            + (-part_of_radicand_a2_4 - part_of_radicand_a2*span_3_y)*z - part_of_radicand_a2_3*span_3_y*span_3_y
+            arm_length_squared
+            + (part_of_radicand_a2_2 * span_3_y - part_of_radicand_a2_5) * span_2_x
+            + (-part_of_radicand_a2_4 - part_of_radicand_a2 * span_3_y) * z
+            - part_of_radicand_a2_3 * span_3_y * span_3_y
         )
         # rod 3 cannot reach
         if not (radicand_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (part_of_radicand_a2_5 - part_of_radicand_a2_2*span_3_y)*span_2_x
-                    + (part_of_radicand_a2_4 + part_of_radicand_a2*span_3_y)*z + part_of_radicand_a2_3*span_3_y*span_3_y
+                    (part_of_radicand_a2_5 - part_of_radicand_a2_2 * span_3_y) * span_2_x
+                    + (part_of_radicand_a2_4 + part_of_radicand_a2 * span_3_y) * z
+                    + part_of_radicand_a2_3 * span_3_y * span_3_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
-        cos_rail_angle_times_z = z*cos_rail_angle
-        middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
-        a1 = (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
-        rod_1_x = span_1_x + a1*sin_rail_angle
-        pivot_1_z = -a1*cos_rail_angle
+        cos_rail_angle_times_z = z * cos_rail_angle
+        middle_a1 = cos_rail_angle_times_z + span_1_x * sin_rail_angle
+        a1 = (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1 - middle_a1
+        rod_1_x = span_1_x + a1 * sin_rail_angle
+        pivot_1_z = -a1 * cos_rail_angle
         rod_1_z = z - pivot_1_z
-        part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle*span_2_x
-        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
-        a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
-        rod_2_x = span_2_x - a2*half_sin_rail_angle
-        rod_2_y = span_2_y + a2*part_of_pivot_2_y
-        pivot_2_z = -a2*cos_rail_angle
+        part_of_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
+        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y * span_2_y
+        a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
+        rod_2_x = span_2_x - a2 * half_sin_rail_angle
+        rod_2_y = span_2_y + a2 * part_of_pivot_2_y
+        pivot_2_z = -a2 * cos_rail_angle
         rod_2_z = z - pivot_2_z
-        middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
-        a3 = middle_a3 + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)*sigma_carriage_3
-        rod_3_x = span_2_x - a3*half_sin_rail_angle
-        rod_3_y = span_3_y - a3*part_of_pivot_2_y
-        pivot_3_z = -a3*cos_rail_angle
+        middle_a3 = part_of_pivot_2_y * span_3_y - part_of_middle_a2
+        a3 = middle_a3 + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
+        rod_3_x = span_2_x - a3 * half_sin_rail_angle
+        rod_3_y = span_3_y - a3 * part_of_pivot_2_y
+        pivot_3_z = -a3 * cos_rail_angle
         rod_3_z = z - pivot_3_z
-        type2_rods_coplanar = (
-            part_of_type2_rods_coplanar
-            *(
-                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
-                + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*y
-            )
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
             )
         # ball joint of rod 1
-        if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
+        if not (abs(y) / arm_length <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(abs(y)/arm_length + 0.0, root(1.0 - y*y/arm_length_squared) + 0.0)
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                arctan2(abs(y) / arm_length + 0.0, root(1.0 - y * y / arm_length_squared) + 0.0)
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-                /DEGREE
-            )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
-        part = root_of_3_times_half_by_arm_length*x
-        half_by_arm_length_times_y = half_by_arm_length*y
+        part = root_of_3_times_half_by_arm_length * x
+        half_by_arm_length_times_y = half_by_arm_length * y
         # ball joint of rod 2
         if not (abs(half_by_arm_length_times_y + part) <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(
-                        abs(half_by_arm_length_times_y + part) + 0.0,
-                        root(1.0 + (-half_by_arm_length_times_y - part)*(half_by_arm_length_times_y + part)) + 0.0,
-                    )
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                arctan2(
+                    abs(half_by_arm_length_times_y + part) + 0.0,
+                    root(1.0 + (-half_by_arm_length_times_y - part) * (half_by_arm_length_times_y + part)) + 0.0,
                 )
-                /DEGREE
-            )
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
+                )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(half_by_arm_length_times_y - part) <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(
-                        abs(half_by_arm_length_times_y - part) + 0.0,
-                        root(1.0 + (part - half_by_arm_length_times_y)*(half_by_arm_length_times_y - part)) + 0.0,
-                    )
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                arctan2(
+                    abs(half_by_arm_length_times_y - part) + 0.0,
+                    root(1.0 + (part - half_by_arm_length_times_y) * (half_by_arm_length_times_y - part)) + 0.0,
                 )
-                /DEGREE
-            )
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
+                )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -774,129 +555,95 @@ class TripodLinear(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
-        # limits of A3
-        if not (axis_a3 >= lowest_a3):
-            missing = lowest_a3 - axis_a3
-            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [u]", missing)
-        if not (axis_a3 <= highest_a3):
-            missing = axis_a3 - highest_a3
-            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [u]", missing)
+        highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
+        lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond("A1", axis_a1, lowest_a1, highest_a1, "u")
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond("A2", axis_a2, lowest_a2, highest_a2, "u")
+        if not lowest_a3 <= axis_a3 <= highest_a3:
+            return beyond("A3", axis_a3, lowest_a3, highest_a3, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        cos_rail_angle = k.cos_rail_angle
-        cos_rail_angle_by_arm_length = k.cos_rail_angle_by_arm_length
-        half_sin_rail_angle = k.half_sin_rail_angle
-        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        one_by_arm_length = k.one_by_arm_length
+        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
+        half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
+        offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
         part_of_branch_carriage_2 = k.part_of_branch_carriage_2
-        part_of_margin_rods_coplanar = k.part_of_margin_rods_coplanar
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
-        sin_rail_angle = k.sin_rail_angle
+        part_of_margin_rods_coplanar, part_of_normal_divisor = k.part_of_margin_rods_coplanar, k.part_of_normal_divisor
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        part_of_pivot_2_y_2, sin_rail_angle = k.part_of_pivot_2_y_2, k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y
+        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2
+        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2
         a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1*cos_rail_angle
-        pivot_2_z = -a2*cos_rail_angle
+        pivot_1_z = -a1 * cos_rail_angle
+        pivot_2_z = -a2 * cos_rail_angle
         centre_1_to_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*cos_rail_angle
+        pivot_3_z = -a3 * cos_rail_angle
         centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2: centre about which it swings
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
-                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        z = foot_z + pivot_1_z + height_by_normal*normal_z
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        margin_square_1 = (a1 + z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
-        y = foot_y + height_by_normal*normal_y
+        margin_square_1 = (a1 + z * cos_rail_angle + span_1_x * sin_rail_angle) / arm_length
+        y = foot_y + height_by_normal * normal_y
         span_2_y = y - part_of_pivot_2_y_2
         span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        part_of_margin_square_2 = span_2_x*sin_rail_angle_times_half_by_arm_length - z*cos_rail_angle_by_arm_length
-        margin_square_2 = a2*one_by_arm_length + part_of_branch_carriage_2*span_2_y - part_of_margin_square_2
+        part_of_margin_square_2 = span_2_x * sin_rail_angle_times_half_by_arm_length - z * cos_rail_angle_by_arm_length
+        margin_square_2 = a2 * one_by_arm_length + part_of_branch_carriage_2 * span_2_y - part_of_margin_square_2
         span_3_y = part_of_pivot_2_y_2 + y
-        margin_square_3 = a3*one_by_arm_length - part_of_margin_square_2 - part_of_branch_carriage_2*span_3_y
+        margin_square_3 = a3 * one_by_arm_length - part_of_margin_square_2 - part_of_branch_carriage_2 * span_3_y
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
         rod_2_x = x - pivot_2_x
@@ -906,12 +653,10 @@ class TripodLinear(OffsetKinematics):
         rod_3_y = y - pivot_3_y
         rod_3_z = z - pivot_3_z
         margin_rods_coplanar = (
-            (
-                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
-                + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*y
-            )
-            /part_of_margin_rods_coplanar
-        )
+            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
+        ) / part_of_margin_rods_coplanar
         return (margin_square_1, margin_square_2, margin_square_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -919,143 +664,131 @@ class TripodLinear(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        cos_rail_angle = k.cos_rail_angle
-        half_sin_rail_angle = k.half_sin_rail_angle
-        inner_radius = k.inner_radius
-        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        outer_radius = k.outer_radius
-        part_of_determinant_divisor = k.part_of_determinant_divisor
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
-        part_of_slope_1_by_x = k.part_of_slope_1_by_x
-        sin_rail_angle = k.sin_rail_angle
-        sin_rail_angle_times_root_of_3 = k.sin_rail_angle_times_root_of_3
-        twice_cos_rail_angle = k.twice_cos_rail_angle
-        twice_sin_rail_angle = k.twice_sin_rail_angle
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        cos_rail_angle, half_sin_rail_angle, inner_radius = k.cos_rail_angle, k.half_sin_rail_angle, k.inner_radius
+        inner_radius_minus_outer_radius, offset_a1 = k.inner_radius_minus_outer_radius, k.offset_a1
+        offset_a2, offset_a3, outer_radius = k.offset_a2, k.offset_a3, k.outer_radius
+        part_of_determinant_divisor, part_of_normal_divisor = k.part_of_determinant_divisor, k.part_of_normal_divisor
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        part_of_pivot_2_y_2, part_of_slope_1_by_x = k.part_of_pivot_2_y_2, k.part_of_slope_1_by_x
+        sin_rail_angle, sin_rail_angle_times_root_of_3 = k.sin_rail_angle, k.sin_rail_angle_times_root_of_3
+        twice_cos_rail_angle, twice_sin_rail_angle = k.twice_cos_rail_angle, k.twice_sin_rail_angle
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y
+        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2
+        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2
         a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1*cos_rail_angle
-        pivot_2_z = -a2*cos_rail_angle
+        pivot_1_z = -a1 * cos_rail_angle
+        pivot_2_z = -a2 * cos_rail_angle
         centre_1_to_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*cos_rail_angle
+        pivot_3_z = -a3 * cos_rail_angle
         centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2: centre about which it swings
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
-                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
-        twice_x = 2.0*x
-        slope_1_by_x = twice_x + a1*twice_sin_rail_angle - part_of_slope_1_by_x
-        y = foot_y + height_by_normal*normal_y
-        slope_1_by_y = 2.0*y
-        z = foot_z + pivot_1_z + height_by_normal*normal_z
-        twice_z = 2.0*z
-        slope_1_by_z = twice_z + a1*twice_cos_rail_angle
-        a2_times_sin_rail_angle = a2*sin_rail_angle
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        twice_x = 2.0 * x
+        slope_1_by_x = twice_x + a1 * twice_sin_rail_angle - part_of_slope_1_by_x
+        y = foot_y + height_by_normal * normal_y
+        slope_1_by_y = 2.0 * y
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
+        twice_z = 2.0 * z
+        slope_1_by_z = twice_z + a1 * twice_cos_rail_angle
+        a2_times_sin_rail_angle = a2 * sin_rail_angle
         root_of_3_2 = root(3.0)
-        part_of_slope_2_by_y = (inner_radius - a2_times_sin_rail_angle - outer_radius)*root_of_3_2
+        part_of_slope_2_by_y = (inner_radius - a2_times_sin_rail_angle - outer_radius) * root_of_3_2
         slope_2_by_y = slope_1_by_y - part_of_slope_2_by_y
-        slope_2_by_z = twice_z + a2*twice_cos_rail_angle
-        a3_times_sin_rail_angle = a3*sin_rail_angle
-        part_of_slope_3_by_y = (inner_radius - a3_times_sin_rail_angle - outer_radius)*root_of_3_2
+        slope_2_by_z = twice_z + a2 * twice_cos_rail_angle
+        a3_times_sin_rail_angle = a3 * sin_rail_angle
+        part_of_slope_3_by_y = (inner_radius - a3_times_sin_rail_angle - outer_radius) * root_of_3_2
         slope_3_by_y = part_of_slope_3_by_y + slope_1_by_y
-        slope_3_by_z = twice_z + a3*twice_cos_rail_angle
-        part_of_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y
+        slope_3_by_z = twice_z + a3 * twice_cos_rail_angle
+        part_of_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
         part_of_slope_2_by_x = inner_radius_minus_outer_radius + twice_x
         slope_2_by_x = part_of_slope_2_by_x - a2_times_sin_rail_angle
         slope_3_by_x = part_of_slope_2_by_x - a3_times_sin_rail_angle
-        part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
-        part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
+        part_of_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        part_of_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
-            part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
+            part_of_determinant * slope_1_by_x
+            + part_of_determinant_2 * slope_1_by_y
+            + part_of_determinant_3 * slope_1_by_z
         )
         # nothing controls the plate
         if not (abs(determinant) > part_of_determinant_divisor):
             return Status.IMPOSSIBLE
-        slope_1_by_a1 = (z - pivot_1_z)*twice_cos_rail_angle + (x - pivot_1_x)*twice_sin_rail_angle
-        one_by_determinant_divisor = 1.0/determinant
-        part = one_by_determinant_divisor*slope_1_by_a1
+        slope_1_by_a1 = (z - pivot_1_z) * twice_cos_rail_angle + (x - pivot_1_x) * twice_sin_rail_angle
+        one_by_determinant_divisor = 1.0 / determinant
+        part = one_by_determinant_divisor * slope_1_by_a1
         slope_2_by_a2 = (
-            (pivot_2_x - x)*sin_rail_angle + (y - 0.5*part_of_slope_2_by_y)*sin_rail_angle_times_root_of_3
-            + (z - pivot_2_z)*twice_cos_rail_angle
+            (pivot_2_x - x) * sin_rail_angle
+            + (y - 0.5 * part_of_slope_2_by_y) * sin_rail_angle_times_root_of_3
+            + (z - pivot_2_z) * twice_cos_rail_angle
         )
-        part_2 = one_by_determinant_divisor*slope_2_by_a2
+        part_2 = one_by_determinant_divisor * slope_2_by_a2
         slope_3_by_a3 = (
-            (pivot_3_x - x)*sin_rail_angle + (z - pivot_3_z)*twice_cos_rail_angle
-            - (0.5*part_of_slope_3_by_y + y)*sin_rail_angle_times_root_of_3
+            (pivot_3_x - x) * sin_rail_angle
+            + (z - pivot_3_z) * twice_cos_rail_angle
+            - (0.5 * part_of_slope_3_by_y + y) * sin_rail_angle_times_root_of_3
         )
-        part_3 = one_by_determinant_divisor*slope_3_by_a3
+        part_3 = one_by_determinant_divisor * slope_3_by_a3
         return (
             (
-                -part*part_of_determinant,
-                part_2*(slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y),
-                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
+                -part * part_of_determinant,
+                part_2 * (slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y),
+                (slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z) * part_3,
             ),
             (
-                -part*part_of_determinant_2,
-                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*part_2,
-                part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
+                -part * part_of_determinant_2,
+                (slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z) * part_2,
+                part_3 * (slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x),
             ),
             (
-                -part*part_of_determinant_3,
-                part_2*(slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x),
-                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
+                -part * part_of_determinant_3,
+                part_2 * (slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x),
+                (slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y) * part_3,
             ),
         )
 
@@ -1064,194 +797,163 @@ class TripodLinear(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        cos_rail_angle = k.cos_rail_angle
+        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared_times_rounding, cos_rail_angle = k.arm_length_squared_times_rounding, k.cos_rail_angle
         cos_rail_angle_squared = k.cos_rail_angle_squared
         cos_rail_angle_times_sin_rail_angle = k.cos_rail_angle_times_sin_rail_angle
-        half_by_arm_length = k.half_by_arm_length
-        half_sin_rail_angle = k.half_sin_rail_angle
-        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        one_minus_sin_rail_angle_squared = k.one_minus_sin_rail_angle_squared
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
-        part_of_radicand_a1 = k.part_of_radicand_a1
-        part_of_radicand_a2 = k.part_of_radicand_a2
-        part_of_radicand_a2_2 = k.part_of_radicand_a2_2
-        part_of_radicand_a2_3 = k.part_of_radicand_a2_3
+        half_by_arm_length, half_sin_rail_angle = k.half_by_arm_length, k.half_sin_rail_angle
+        inner_radius_minus_outer_radius, min_type2_margin = k.inner_radius_minus_outer_radius, k.min_type2_margin
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        one_minus_sin_rail_angle_squared, part_of_pivot_2_x = k.one_minus_sin_rail_angle_squared, k.part_of_pivot_2_x
+        part_of_pivot_2_y, part_of_pivot_2_y_2 = k.part_of_pivot_2_y, k.part_of_pivot_2_y_2
+        part_of_radicand_a1, part_of_radicand_a2 = k.part_of_radicand_a1, k.part_of_radicand_a2
+        part_of_radicand_a2_2, part_of_radicand_a2_3 = k.part_of_radicand_a2_2, k.part_of_radicand_a2_3
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length = k.root_of_3_times_half_by_arm_length
-        sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
-        sin_rail_angle = k.sin_rail_angle
+        sin_max_angle_ball_joint, sin_rail_angle = k.sin_max_angle_ball_joint, k.sin_rail_angle
         sin_rail_angle_squared_times_1_by_4 = k.sin_rail_angle_squared_times_1_by_4
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
-        ):
+        if not are_usable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_y = y - point_y  # position of the flange: the point less its offset
         flange_z = z - point_z  # position of the flange: the point less its offset
         flange_x = x - point_x  # position of the flange: the point less its offset
         span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        part_of_radicand_a1_2 = flange_z - flange_z*cos_rail_angle_squared
+        part_of_radicand_a1_2 = flange_z - flange_z * cos_rail_angle_squared
         # quadratic equation for a1: rod 1
         radicand_a1 = (
-            arm_length_squared + flange_z*(part_of_radicand_a1*span_1_x - part_of_radicand_a1_2) - flange_y*flange_y
-            - one_minus_sin_rail_angle_squared*span_1_x*span_1_x
+            arm_length_squared
+            + flange_z * (part_of_radicand_a1 * span_1_x - part_of_radicand_a1_2)
+            - flange_y * flange_y
+            - one_minus_sin_rail_angle_squared * span_1_x * span_1_x
         )
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    flange_y*flange_y + (part_of_radicand_a1_2 - part_of_radicand_a1*span_1_x)*flange_z
-                    + one_minus_sin_rail_angle_squared*span_1_x*span_1_x
+                    flange_y * flange_y
+                    + (part_of_radicand_a1_2 - part_of_radicand_a1 * span_1_x) * flange_z
+                    + one_minus_sin_rail_angle_squared * span_1_x * span_1_x
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = flange_y - part_of_pivot_2_y_2
-        part_of_radicand_a2_4 = part_of_radicand_a1_2 + span_2_x*cos_rail_angle_times_sin_rail_angle
-        part_of_radicand_a2_5 = span_2_x - span_2_x*sin_rail_angle_squared_times_1_by_4
+        part_of_radicand_a2_4 = part_of_radicand_a1_2 + span_2_x * cos_rail_angle_times_sin_rail_angle
+        part_of_radicand_a2_5 = span_2_x - span_2_x * sin_rail_angle_squared_times_1_by_4
         # quadratic equation for a2: rod 2
         radicand_a2 = (
-            arm_length_squared + flange_z*(part_of_radicand_a2*span_2_y - part_of_radicand_a2_4)
-            + (-part_of_radicand_a2_5 - part_of_radicand_a2_2*span_2_y)*span_2_x
-            - part_of_radicand_a2_3*span_2_y*span_2_y
+            arm_length_squared
+            + flange_z * (part_of_radicand_a2 * span_2_y - part_of_radicand_a2_4)
+            + (-part_of_radicand_a2_5 - part_of_radicand_a2_2 * span_2_y) * span_2_x
+            - part_of_radicand_a2_3 * span_2_y * span_2_y
         )
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    (part_of_radicand_a2_4 - part_of_radicand_a2*span_2_y)*flange_z
-                    + (part_of_radicand_a2_5 + part_of_radicand_a2_2*span_2_y)*span_2_x
-                    + part_of_radicand_a2_3*span_2_y*span_2_y
+                    (part_of_radicand_a2_4 - part_of_radicand_a2 * span_2_y) * flange_z
+                    + (part_of_radicand_a2_5 + part_of_radicand_a2_2 * span_2_y) * span_2_x
+                    + part_of_radicand_a2_3 * span_2_y * span_2_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_3_y = flange_y + part_of_pivot_2_y_2
         # quadratic equation for a3: rod 3
         radicand_a3 = (
-            arm_length_squared + (-part_of_radicand_a2_4 - part_of_radicand_a2*span_3_y)*flange_z
-            + (part_of_radicand_a2_2*span_3_y - part_of_radicand_a2_5)*span_2_x
-            - part_of_radicand_a2_3*span_3_y*span_3_y
+            arm_length_squared
+            + (-part_of_radicand_a2_4 - part_of_radicand_a2 * span_3_y) * flange_z
+            + (part_of_radicand_a2_2 * span_3_y - part_of_radicand_a2_5) * span_2_x
+            - part_of_radicand_a2_3 * span_3_y * span_3_y
         )
         # rod 3 cannot reach
         if not (radicand_a3 >= -arm_length_squared_times_rounding):
             missing = abs(
                 arm_length
                 - root(
-                    flange_z*(part_of_radicand_a2_4 + part_of_radicand_a2*span_3_y)
-                    + (part_of_radicand_a2_5 - part_of_radicand_a2_2*span_3_y)*span_2_x
-                    + part_of_radicand_a2_3*span_3_y*span_3_y
+                    flange_z * (part_of_radicand_a2_4 + part_of_radicand_a2 * span_3_y)
+                    + (part_of_radicand_a2_5 - part_of_radicand_a2_2 * span_3_y) * span_2_x
+                    + part_of_radicand_a2_3 * span_3_y * span_3_y
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
-        cos_rail_angle_times_flange_z = flange_z*cos_rail_angle
-        middle_a1 = cos_rail_angle_times_flange_z + span_1_x*sin_rail_angle
-        a1 = (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
-        rod_1_x = span_1_x + a1*sin_rail_angle
-        pivot_1_z = -a1*cos_rail_angle
+        cos_rail_angle_times_flange_z = flange_z * cos_rail_angle
+        middle_a1 = cos_rail_angle_times_flange_z + span_1_x * sin_rail_angle
+        a1 = (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1 - middle_a1
+        rod_1_x = span_1_x + a1 * sin_rail_angle
+        pivot_1_z = -a1 * cos_rail_angle
         rod_1_z = flange_z - pivot_1_z
-        part_of_middle_a2 = cos_rail_angle_times_flange_z - half_sin_rail_angle*span_2_x
-        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y*span_2_y
-        a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
-        rod_2_x = span_2_x - a2*half_sin_rail_angle
-        rod_2_y = span_2_y + a2*part_of_pivot_2_y
-        pivot_2_z = -a2*cos_rail_angle
+        part_of_middle_a2 = cos_rail_angle_times_flange_z - half_sin_rail_angle * span_2_x
+        middle_a2 = -part_of_middle_a2 - part_of_pivot_2_y * span_2_y
+        a2 = middle_a2 + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
+        rod_2_x = span_2_x - a2 * half_sin_rail_angle
+        rod_2_y = span_2_y + a2 * part_of_pivot_2_y
+        pivot_2_z = -a2 * cos_rail_angle
         rod_2_z = flange_z - pivot_2_z
-        middle_a3 = part_of_pivot_2_y*span_3_y - part_of_middle_a2
-        a3 = middle_a3 + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)*sigma_carriage_3
-        rod_3_x = span_2_x - a3*half_sin_rail_angle
-        rod_3_y = span_3_y - a3*part_of_pivot_2_y
-        pivot_3_z = -a3*cos_rail_angle
+        middle_a3 = part_of_pivot_2_y * span_3_y - part_of_middle_a2
+        a3 = middle_a3 + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
+        rod_3_x = span_2_x - a3 * half_sin_rail_angle
+        rod_3_y = span_3_y - a3 * part_of_pivot_2_y
+        pivot_3_z = -a3 * cos_rail_angle
         rod_3_z = flange_z - pivot_3_z
         type2_rods_coplanar = (
-            (
-                (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*flange_y + rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y)
-                + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
-            )
-            *part_of_type2_rods_coplanar
-        )
+            (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * flange_y
+            + rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+        ) * part_of_type2_rods_coplanar
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
             )
         # ball joint of rod 1
-        if not (abs(flange_y)/arm_length <= sin_max_angle_ball_joint):
+        if not (abs(flange_y) / arm_length <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(abs(flange_y)/arm_length + 0.0, root(1.0 - flange_y*flange_y/arm_length_squared) + 0.0)
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                arctan2(abs(flange_y) / arm_length + 0.0, root(1.0 - flange_y * flange_y / arm_length_squared) + 0.0)
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-                /DEGREE
-            )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
-        part = flange_x*root_of_3_times_half_by_arm_length
-        half_by_arm_length_times_flange_y = flange_y*half_by_arm_length
+        part = flange_x * root_of_3_times_half_by_arm_length
+        half_by_arm_length_times_flange_y = flange_y * half_by_arm_length
         # ball joint of rod 2
         if not (abs(half_by_arm_length_times_flange_y + part) <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(
-                        abs(half_by_arm_length_times_flange_y + part) + 0.0,
-                        (
-                            root(
-                                1.0
-                                + (-half_by_arm_length_times_flange_y - part)*(half_by_arm_length_times_flange_y + part)
-                            )
-                            + 0.0
-                        ),
-                    )
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                arctan2(
+                    abs(half_by_arm_length_times_flange_y + part) + 0.0,
+                    root(1.0 + (-half_by_arm_length_times_flange_y - part) * (half_by_arm_length_times_flange_y + part))
+                    + 0.0,
                 )
-                /DEGREE
-            )
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
+                )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(half_by_arm_length_times_flange_y - part) <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(
-                        abs(half_by_arm_length_times_flange_y - part) + 0.0,
-                        (
-                            root(
-                                1.0
-                                + (part - half_by_arm_length_times_flange_y)*(half_by_arm_length_times_flange_y - part)
-                            )
-                            + 0.0
-                        ),
-                    )
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                arctan2(
+                    abs(half_by_arm_length_times_flange_y - part) + 0.0,
+                    root(1.0 + (part - half_by_arm_length_times_flange_y) * (half_by_arm_length_times_flange_y - part))
+                    + 0.0,
                 )
-                /DEGREE
-            )
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
+                )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -1262,97 +964,82 @@ class TripodLinear(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        cos_rail_angle = k.cos_rail_angle
-        cos_rail_angle_by_arm_length = k.cos_rail_angle_by_arm_length
-        half_sin_rail_angle = k.half_sin_rail_angle
-        inner_radius_minus_outer_radius = k.inner_radius_minus_outer_radius
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        one_by_arm_length = k.one_by_arm_length
-        part_of_branch_carriage_2 = k.part_of_branch_carriage_2
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_pivot_2_y_2 = k.part_of_pivot_2_y_2
-        sin_rail_angle = k.sin_rail_angle
+        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
+        half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
+        offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
+        part_of_branch_carriage_2, part_of_normal_divisor = k.part_of_branch_carriage_2, k.part_of_normal_divisor
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        part_of_pivot_2_y_2, sin_rail_angle = k.part_of_pivot_2_y_2, k.sin_rail_angle
         sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
-        pivot_2_y = part_of_pivot_2_y_2 - a2*part_of_pivot_2_y
+        pivot_2_y = part_of_pivot_2_y_2 - a2 * part_of_pivot_2_y
         a3 = axis_a3 - offset_a3
-        pivot_3_y = a3*part_of_pivot_2_y - part_of_pivot_2_y_2
+        pivot_3_y = a3 * part_of_pivot_2_y - part_of_pivot_2_y_2
         a1 = axis_a1 - offset_a1
-        pivot_1_z = -a1*cos_rail_angle
-        pivot_2_z = -a2*cos_rail_angle
+        pivot_1_z = -a1 * cos_rail_angle
+        pivot_2_z = -a2 * cos_rail_angle
         centre_1_to_2_z = pivot_2_z - pivot_1_z
-        pivot_3_z = -a3*cos_rail_angle
+        pivot_3_z = -a3 * cos_rail_angle
         centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + a2*half_sin_rail_angle  # rod 2: centre about which it swings
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + a3*half_sin_rail_angle  # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
-                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        flange_z = foot_z + pivot_1_z + height_by_normal*normal_z
-        flange_x = foot_x + pivot_1_x + height_by_normal*normal_x
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        flange_z = foot_z + pivot_1_z + height_by_normal * normal_z
+        flange_x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = flange_x - inner_radius_minus_outer_radius  # rod 1: known part of its vector
-        branch_carriage_1 = (a1 + flange_z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
-        flange_y = foot_y + height_by_normal*normal_y
+        branch_carriage_1 = (a1 + flange_z * cos_rail_angle + span_1_x * sin_rail_angle) / arm_length
+        flange_y = foot_y + height_by_normal * normal_y
         span_2_y = flange_y - part_of_pivot_2_y_2
         span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
         part_of_branch_carriage_2_2 = (
-            span_2_x*sin_rail_angle_times_half_by_arm_length - flange_z*cos_rail_angle_by_arm_length
+            span_2_x * sin_rail_angle_times_half_by_arm_length - flange_z * cos_rail_angle_by_arm_length
         )
-        branch_carriage_2 = a2*one_by_arm_length + part_of_branch_carriage_2*span_2_y - part_of_branch_carriage_2_2
+        branch_carriage_2 = a2 * one_by_arm_length + part_of_branch_carriage_2 * span_2_y - part_of_branch_carriage_2_2
         span_3_y = flange_y + part_of_pivot_2_y_2
-        branch_carriage_3 = a3*one_by_arm_length - part_of_branch_carriage_2_2 - part_of_branch_carriage_2*span_3_y
+        branch_carriage_3 = a3 * one_by_arm_length - part_of_branch_carriage_2_2 - part_of_branch_carriage_2 * span_3_y
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -1366,8 +1053,7 @@ class TripodLinear(OffsetKinematics):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     @property
     def _criteria(self) -> tuple[Criterion, ...]:

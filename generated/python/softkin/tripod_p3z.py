@@ -33,104 +33,187 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from softkin._configuration import Criterion
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
-from softkin._scalar import root, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import are_usable, root, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.tripod_p3z import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    arm_length: float
-    tcp_displacement: float
-    rail_x_1: float
-    rail_y_1: float
-    rail_x_2: float
-    rail_y_2: float
-    rail_x_3: float
-    rail_y_3: float
-    offset_a1: float
-    offset_a2: float
-    offset_a3: float
-    tcp_above: bool
-    min_type2_margin: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    lower_a3: float
-    upper_a3: float
-    unlimited_a3: bool
-    lowest_a3: float
-    highest_a3: float
-    machine_scale: float
-    tie: float
-    pivot_1_y: float
-    pivot_2_y: float
-    centre_1_to_2_y: float
-    pivot_3_y: float
-    centre_1_to_3_y: float
-    pivot_1_x: float
-    pivot_2_x: float
-    centre_1_to_2_x: float
-    pivot_3_x: float
-    centre_1_to_3_x: float
-    normal_z: float
-    assembly_sign: float
-    normal_z_squared: float
-    part_of_normal_divisor: float
-    centre_1_to_3_y_times_normal_z: float
-    centre_1_to_2_y_times_normal_z: float
-    centre_1_to_3_x_times_normal_z: float
-    centre_1_to_2_x_times_normal_z: float
-    arm_length_squared: float
-    arm_length_squared_times_rounding: float
-    part_of_projection_2: float
-    part_of_projection_3: float
-    one_by_arm_length: float
-    part_of_span_1_x: float
-    part_of_span_1_y: float
-    part_of_span_2_x: float
-    part_of_span_2_y: float
-    part_of_span_3_x: float
-    part_of_span_3_y: float
-    part_of_type2_rods_coplanar: float
-    part_of_margin_rods_coplanar: float
-    part_of_determinant_divisor: float
-    part_of_slope_1_by_x: float
-    part_of_slope_1_by_y: float
-    part_of_slope_2_by_x: float
-    part_of_slope_2_by_y: float
-    part_of_slope_3_by_x: float
-    part_of_slope_3_by_y: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        arm_length, tcp_displacement, rail_x_1 = p["arm_length"], p["tcp_displacement"], p["rail_x_1"]
+        rail_y_1, rail_x_2, rail_y_2, rail_x_3 = p["rail_y_1"], p["rail_x_2"], p["rail_y_2"], p["rail_x_3"]
+        rail_y_3, offset_a1, offset_a2, offset_a3 = p["rail_y_3"], p["offset_a1"], p["offset_a2"], p["offset_a3"]
+        tcp_above, min_type2_margin = bool(p["tcp_above"]), p["min_type2_margin"]
+        if not (sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1) > tcp_displacement):
+            raise machine._refusal(
+                "rail 1 must be farther from the origin than tcp_displacement",
+                "tcp_displacement",
+                "rail_x_1",
+                "rail_y_1",
+            )
+        if not (sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2) > tcp_displacement):
+            raise machine._refusal(
+                "rail 2 must be farther from the origin than tcp_displacement",
+                "tcp_displacement",
+                "rail_x_2",
+                "rail_y_2",
+            )
+        if not (sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3) > tcp_displacement):
+            raise machine._refusal(
+                "rail 3 must be farther from the origin than tcp_displacement",
+                "tcp_displacement",
+                "rail_x_3",
+                "rail_y_3",
+            )
+        if not (
+            abs((rail_x_2 - rail_x_1) * (rail_y_3 - rail_y_1) - (rail_x_3 - rail_x_1) * (rail_y_2 - rail_y_1))
+            > 1e-6 * arm_length * arm_length
+        ):
+            raise machine._refusal(
+                "the rails must not lie on a line",
+                "arm_length",
+                "rail_x_1",
+                "rail_y_1",
+                "rail_x_2",
+                "rail_y_2",
+                "rail_x_3",
+                "rail_y_3",
+            )
+        # what every arm reaches, seen from above: a disc
+        reach_x_1 = (1.0 - tcp_displacement / sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)) * rail_x_1
+        reach_y_1 = (1.0 - tcp_displacement / sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)) * rail_y_1
+        reach_1 = arm_length
+        reach_x_2 = (1.0 - tcp_displacement / sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)) * rail_x_2
+        reach_y_2 = (1.0 - tcp_displacement / sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)) * rail_y_2
+        reach_2 = arm_length
+        reach_x_3 = (1.0 - tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)) * rail_x_3
+        reach_y_3 = (1.0 - tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)) * rail_y_3
+        reach_3 = arm_length
+        side_12_x = reach_x_2 - reach_x_1
+        side_12_y = reach_y_2 - reach_y_1
+        side_13_x = reach_x_3 - reach_x_1
+        side_13_y = reach_y_3 - reach_y_1
+        side_23_x = reach_x_3 - reach_x_2
+        side_23_y = reach_y_3 - reach_y_2
+        if not (
+            side_12_x * side_12_x + side_12_y * side_12_y <= (reach_1 + reach_2) * (reach_1 + reach_2)
+            and side_13_x * side_13_x + side_13_y * side_13_y <= (reach_1 + reach_3) * (reach_1 + reach_3)
+            and side_23_x * side_23_x + side_23_y * side_23_y <= (reach_2 + reach_3) * (reach_2 + reach_3)
+        ):
+            raise machine._refusal("rods long enough to reach the plate")
+        corner_area = side_12_x * side_13_y - side_12_y * side_13_x
+        power_2 = reach_1 * reach_1 + side_12_x * side_12_x + side_12_y * side_12_y - reach_2 * reach_2
+        power_3 = reach_1 * reach_1 + side_13_x * side_13_x + side_13_y * side_13_y - reach_3 * reach_3
+        equal_power_x = power_2 * side_13_y - power_3 * side_12_y
+        equal_power_y = power_3 * side_12_x - power_2 * side_13_x
+        weight_2 = equal_power_x * side_13_y - equal_power_y * side_13_x
+        weight_3 = equal_power_y * side_12_x - equal_power_x * side_12_y
+        if not (
+            (weight_2 < 0.0)
+            or (weight_3 < 0.0)
+            or (weight_2 + weight_3 > 2.0 * corner_area * corner_area)
+            or (
+                equal_power_x * equal_power_x + equal_power_y * equal_power_y
+                <= 4.0 * corner_area * corner_area * reach_1 * reach_1
+            )
+        ):
+            raise machine._refusal("rods long enough to reach the plate")
+        self.lowest_a1, self.highest_a1, *_ = machine._window("a1")
+        self.lowest_a2, self.highest_a2, *_ = machine._window("a2")
+        self.lowest_a3, self.highest_a3, *_ = machine._window("a3")
+        machine_scale = arm_length + tcp_displacement  # characteristic length of the machine
+        tie = 1e-12 * machine_scale * machine_scale  # squared distances closer than this are equal
+        pivot_1_y = rail_y_1 - rail_y_1 * tcp_displacement / sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)
+        pivot_2_y = rail_y_2 - rail_y_2 * tcp_displacement / sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        pivot_3_y = rail_y_3 - rail_y_3 * tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)
+        centre_1_to_3_y = pivot_3_y - pivot_1_y
+        # rod 1: centre about which it swings
+        pivot_1_x = rail_x_1 - rail_x_1 * tcp_displacement / sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)
+        # rod 2: centre about which it swings
+        pivot_2_x = rail_x_2 - rail_x_2 * tcp_displacement / sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        # rod 3: centre about which it swings
+        pivot_3_x = rail_x_3 - rail_x_3 * tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = (
+            (1.0 if tcp_above else -1.0)
+            if (rail_x_2 - rail_x_1) * (rail_y_3 - rail_y_1) - (rail_x_3 - rail_x_1) * (rail_y_2 - rail_y_1) > 0.0
+            else (-1.0 if tcp_above else 1.0)
+        )
+        normal_z_squared = normal_z * normal_z
+        part_of_normal_divisor = 1e-22 * arm_length * arm_length * arm_length * arm_length
+        centre_1_to_3_y_times_normal_z = centre_1_to_3_y * normal_z
+        centre_1_to_2_y_times_normal_z = centre_1_to_2_y * normal_z
+        centre_1_to_3_x_times_normal_z = centre_1_to_3_x * normal_z
+        centre_1_to_2_x_times_normal_z = centre_1_to_2_x * normal_z
+        arm_length_squared = arm_length * arm_length
+        arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
+        part_of_projection_2 = 0.5 * centre_1_to_2_x * centre_1_to_2_x + 0.5 * centre_1_to_2_y * centre_1_to_2_y
+        part_of_projection_3 = 0.5 * centre_1_to_3_x * centre_1_to_3_x + 0.5 * centre_1_to_3_y * centre_1_to_3_y
+        one_by_arm_length = 1.0 / arm_length
+        part_of_span_1_x_2 = sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)
+        part_of_span_1_x = rail_x_1 - rail_x_1 * tcp_displacement / part_of_span_1_x_2
+        part_of_span_1_y = rail_y_1 - rail_y_1 * tcp_displacement / part_of_span_1_x_2
+        part_of_span_2_x_2 = sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)
+        part_of_span_2_x = rail_x_2 - rail_x_2 * tcp_displacement / part_of_span_2_x_2
+        part_of_span_2_y = rail_y_2 - rail_y_2 * tcp_displacement / part_of_span_2_x_2
+        part_of_span_3_x_2 = sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)
+        part_of_span_3_x = rail_x_3 - rail_x_3 * tcp_displacement / part_of_span_3_x_2
+        part_of_span_3_y = rail_y_3 - rail_y_3 * tcp_displacement / part_of_span_3_x_2
+        part_of_type2_rods_coplanar = assembly_sign / (arm_length * arm_length * arm_length)
+        part_of_margin_rods_coplanar = arm_length * arm_length * arm_length
+        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        part_of_slope_1_by_x_2 = tcp_displacement / part_of_span_1_x_2 - 1.0
+        part_of_slope_1_by_x = -part_of_slope_1_by_x_2 * rail_x_1
+        part_of_slope_1_by_y = -part_of_slope_1_by_x_2 * rail_y_1
+        part_of_slope_2_by_x_2 = tcp_displacement / part_of_span_2_x_2 - 1.0
+        part_of_slope_2_by_x = -part_of_slope_2_by_x_2 * rail_x_2
+        part_of_slope_2_by_y = -part_of_slope_2_by_x_2 * rail_y_2
+        part_of_slope_3_by_x_2 = tcp_displacement / part_of_span_3_x_2 - 1.0
+        part_of_slope_3_by_x = -part_of_slope_3_by_x_2 * rail_x_3
+        part_of_slope_3_by_y = -part_of_slope_3_by_x_2 * rail_y_3
+        self.arm_length, self.tcp_displacement, self.rail_x_1 = arm_length, tcp_displacement, rail_x_1
+        self.rail_y_1, self.rail_x_2, self.rail_y_2, self.rail_x_3 = rail_y_1, rail_x_2, rail_y_2, rail_x_3
+        self.rail_y_3, self.offset_a1, self.offset_a2, self.offset_a3 = rail_y_3, offset_a1, offset_a2, offset_a3
+        self.min_type2_margin, self.tie, self.pivot_1_y, self.pivot_2_y = min_type2_margin, tie, pivot_1_y, pivot_2_y
+        self.centre_1_to_2_y, self.pivot_3_y, self.centre_1_to_3_y = centre_1_to_2_y, pivot_3_y, centre_1_to_3_y
+        self.pivot_1_x, self.pivot_2_x, self.centre_1_to_2_x = pivot_1_x, pivot_2_x, centre_1_to_2_x
+        self.pivot_3_x, self.centre_1_to_3_x, self.normal_z = pivot_3_x, centre_1_to_3_x, normal_z
+        self.assembly_sign, self.normal_z_squared = assembly_sign, normal_z_squared
+        self.part_of_normal_divisor = part_of_normal_divisor
+        self.centre_1_to_3_y_times_normal_z = centre_1_to_3_y_times_normal_z
+        self.centre_1_to_2_y_times_normal_z = centre_1_to_2_y_times_normal_z
+        self.centre_1_to_3_x_times_normal_z = centre_1_to_3_x_times_normal_z
+        self.centre_1_to_2_x_times_normal_z = centre_1_to_2_x_times_normal_z
+        self.arm_length_squared = arm_length_squared
+        self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
+        self.part_of_projection_2, self.part_of_projection_3 = part_of_projection_2, part_of_projection_3
+        self.one_by_arm_length, self.part_of_span_1_x = one_by_arm_length, part_of_span_1_x
+        self.part_of_span_1_y, self.part_of_span_2_x = part_of_span_1_y, part_of_span_2_x
+        self.part_of_span_2_y, self.part_of_span_3_x = part_of_span_2_y, part_of_span_3_x
+        self.part_of_span_3_y, self.part_of_type2_rods_coplanar = part_of_span_3_y, part_of_type2_rods_coplanar
+        self.part_of_margin_rods_coplanar = part_of_margin_rods_coplanar
+        self.part_of_determinant_divisor, self.part_of_slope_1_by_x = part_of_determinant_divisor, part_of_slope_1_by_x
+        self.part_of_slope_1_by_y, self.part_of_slope_2_by_x = part_of_slope_1_by_y, part_of_slope_2_by_x
+        self.part_of_slope_2_by_y, self.part_of_slope_3_by_x = part_of_slope_2_by_y, part_of_slope_3_by_x
+        self.part_of_slope_3_by_y = part_of_slope_3_by_y
 
 
 class TripodP3Z(OffsetKinematics):
@@ -139,7 +222,7 @@ class TripodP3Z(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_P3Z"
     AXES = (
@@ -148,88 +231,28 @@ class TripodP3Z(OffsetKinematics):
         Axis(name="A3", kind="linear", unit="u", meaning="Carriage 3 along Z, up", multi_turn=False),
     )
     PARAMETERS = (
-        Parameter(
-            name="arm_length", kind="length", unit="u", meaning="Length of the rods", low=0.0, high=1000000000.0,
-            low_is_open=True, default=None,
+        Parameter.of("length", "arm_length", "Length of the rods"),
+        Parameter.of("distance", "tcp_displacement", "TCP to the rod joints, along the direction of the rail", low=0.0),
+        Parameter.of("distance", "rail_x_1", "X of rail 1"),
+        Parameter.of("distance", "rail_y_1", "Y of rail 1"),
+        Parameter.of("distance", "rail_x_2", "X of rail 2"),
+        Parameter.of("distance", "rail_y_2", "Y of rail 2"),
+        Parameter.of("distance", "rail_x_3", "X of rail 3"),
+        Parameter.of("distance", "rail_y_3", "Y of rail 3"),
+        Parameter.of("distance", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_a3", "A3: axis value at the kinematic zero position"),
+        Parameter.of("distance", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "tcp_above", "assembly mode: above instead of below"),
+        Parameter.of(
+            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
         ),
-        Parameter(
-            name="tcp_displacement", kind="distance", unit="u",
-            meaning="TCP to the rod joints, along the direction of the rail", low=0.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="rail_x_1", kind="distance", unit="u", meaning="X of rail 1", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="rail_y_1", kind="distance", unit="u", meaning="Y of rail 1", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="rail_x_2", kind="distance", unit="u", meaning="X of rail 2", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="rail_y_2", kind="distance", unit="u", meaning="Y of rail 2", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="rail_x_3", kind="distance", unit="u", meaning="X of rail 3", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="rail_y_3", kind="distance", unit="u", meaning="Y of rail 3", low=-1000000000.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a1", kind="distance", unit="u", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a2", kind="distance", unit="u", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a3", kind="distance", unit="u", meaning="A3: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="distance", unit="u", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="distance", unit="u", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="distance", unit="u", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="distance", unit="u", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a3", kind="distance", unit="u", meaning="A3: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a3", kind="distance", unit="u", meaning="A3: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_above", kind="flag", unit="", meaning="assembly mode: above instead of below", low=0.0,
-            high=1.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
-            low_is_open=False, default=0.001,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="carriage_1", kind="branch", branches=("above", "below"), default=1),
@@ -247,11 +270,27 @@ class TripodP3Z(OffsetKinematics):
     DISTANCE_AXES = (0, 1, 2)
 
     def __init__(
-        self, *, arm_length: float, tcp_displacement: float = 0.0, rail_x_1: float = 0.0, rail_y_1: float = 0.0,
-        rail_x_2: float = 0.0, rail_y_2: float = 0.0, rail_x_3: float = 0.0, rail_y_3: float = 0.0,
-        offset_a1: float = 0.0, offset_a2: float = 0.0, offset_a3: float = 0.0, lower_a1: float = 0.0,
-        upper_a1: float = 0.0, lower_a2: float = 0.0, upper_a2: float = 0.0, lower_a3: float = 0.0,
-        upper_a3: float = 0.0, tcp_above: bool = False, min_type2_margin: float = 0.001,
+        self,
+        *,
+        arm_length: float,
+        tcp_displacement: float = 0.0,
+        rail_x_1: float = 0.0,
+        rail_y_1: float = 0.0,
+        rail_x_2: float = 0.0,
+        rail_y_2: float = 0.0,
+        rail_x_3: float = 0.0,
+        rail_y_3: float = 0.0,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        offset_a3: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        lower_a3: float = 0.0,
+        upper_a3: float = 0.0,
+        tcp_above: bool = False,
+        min_type2_margin: float = 0.001,
         check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
@@ -277,263 +316,25 @@ class TripodP3Z(OffsetKinematics):
         min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            arm_length, tcp_displacement, rail_x_1, rail_y_1, rail_x_2, rail_y_2, rail_x_3, rail_y_3, offset_a1,
-            offset_a2, offset_a3, lower_a1, upper_a1, lower_a2, upper_a2, lower_a3, upper_a3, tcp_above,
-            min_type2_margin, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, arm_length: float, tcp_displacement: float, rail_x_1: float, rail_y_1: float, rail_x_2: float,
-        rail_y_2: float, rail_x_3: float, rail_y_3: float, offset_a1: float, offset_a2: float, offset_a3: float,
-        lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float, lower_a3: float, upper_a3: float,
-        tcp_above: bool, min_type2_margin: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (arm_length <= 1e9 and arm_length > 0.0):
-            raise self._refusal("arm_length: Length of the rods", arm_length=arm_length)
-        if not (tcp_displacement >= 0.0 and tcp_displacement <= 1e9):
-            raise self._refusal(
-                "tcp_displacement: TCP to the rod joints, along the direction of the rail",
-                tcp_displacement=tcp_displacement,
-            )
-        if not (rail_x_1 >= -1e9 and rail_x_1 <= 1e9):
-            raise self._refusal("rail_x_1: X of rail 1", rail_x_1=rail_x_1)
-        if not (rail_y_1 >= -1e9 and rail_y_1 <= 1e9):
-            raise self._refusal("rail_y_1: Y of rail 1", rail_y_1=rail_y_1)
-        if not (rail_x_2 >= -1e9 and rail_x_2 <= 1e9):
-            raise self._refusal("rail_x_2: X of rail 2", rail_x_2=rail_x_2)
-        if not (rail_y_2 >= -1e9 and rail_y_2 <= 1e9):
-            raise self._refusal("rail_y_2: Y of rail 2", rail_y_2=rail_y_2)
-        if not (rail_x_3 >= -1e9 and rail_x_3 <= 1e9):
-            raise self._refusal("rail_x_3: X of rail 3", rail_x_3=rail_x_3)
-        if not (rail_y_3 >= -1e9 and rail_y_3 <= 1e9):
-            raise self._refusal("rail_y_3: Y of rail 3", rail_y_3=rail_y_3)
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (offset_a3 >= -1e9 and offset_a3 <= 1e9):
-            raise self._refusal("offset_a3: A3: axis value at the kinematic zero position", offset_a3=offset_a3)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (lower_a3 >= -1e9 and lower_a3 <= 1e9):
-            raise self._refusal("lower_a3: A3: lower limit of the axis, both 0: no limit", lower_a3=lower_a3)
-        if not (upper_a3 >= -1e9 and upper_a3 <= 1e9):
-            raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
-        if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
-            raise self._refusal(
-                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
-                min_type2_margin=min_type2_margin,
-            )
-        if not (sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) > tcp_displacement):
-            raise self._refusal(
-                "rail 1 must be farther from the origin than tcp_displacement", tcp_displacement=tcp_displacement,
-                rail_x_1=rail_x_1, rail_y_1=rail_y_1,
-            )
-        if not (sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) > tcp_displacement):
-            raise self._refusal(
-                "rail 2 must be farther from the origin than tcp_displacement", tcp_displacement=tcp_displacement,
-                rail_x_2=rail_x_2, rail_y_2=rail_y_2,
-            )
-        if not (sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) > tcp_displacement):
-            raise self._refusal(
-                "rail 3 must be farther from the origin than tcp_displacement", tcp_displacement=tcp_displacement,
-                rail_x_3=rail_x_3, rail_y_3=rail_y_3,
-            )
-        if not (
-            abs((rail_x_2 - rail_x_1)*(rail_y_3 - rail_y_1) - (rail_x_3 - rail_x_1)*(rail_y_2 - rail_y_1)) > 1e-6
-            *arm_length*arm_length
-        ):
-            raise self._refusal(
-                "the rails must not lie on a line", arm_length=arm_length, rail_x_1=rail_x_1, rail_y_1=rail_y_1,
-                rail_x_2=rail_x_2, rail_y_2=rail_y_2, rail_x_3=rail_x_3, rail_y_3=rail_y_3,
-            )
-        # what every arm reaches, seen from above: a disc
-        reach_x_1 = (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-        reach_y_1 = (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-        reach_1 = arm_length
-        reach_x_2 = (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-        reach_y_2 = (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-        reach_2 = arm_length
-        reach_x_3 = (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-        reach_y_3 = (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-        reach_3 = arm_length
-        side_12_x = reach_x_2 - reach_x_1
-        side_12_y = reach_y_2 - reach_y_1
-        side_13_x = reach_x_3 - reach_x_1
-        side_13_y = reach_y_3 - reach_y_1
-        side_23_x = reach_x_3 - reach_x_2
-        side_23_y = reach_y_3 - reach_y_2
-        if not (
-            side_12_x*side_12_x + side_12_y*side_12_y <= (reach_1 + reach_2)*(reach_1 + reach_2)
-            and side_13_x*side_13_x + side_13_y*side_13_y <= (reach_1 + reach_3)*(reach_1 + reach_3)
-            and side_23_x*side_23_x + side_23_y*side_23_y <= (reach_2 + reach_3)*(reach_2 + reach_3)
-        ):
-            raise self._refusal("rods long enough to reach the plate")
-        corner_area = side_12_x*side_13_y - side_12_y*side_13_x
-        power_2 = reach_1*reach_1 + side_12_x*side_12_x + side_12_y*side_12_y - reach_2*reach_2
-        power_3 = reach_1*reach_1 + side_13_x*side_13_x + side_13_y*side_13_y - reach_3*reach_3
-        equal_power_x = power_2*side_13_y - power_3*side_12_y
-        equal_power_y = power_3*side_12_x - power_2*side_13_x
-        weight_2 = equal_power_x*side_13_y - equal_power_y*side_13_x
-        weight_3 = equal_power_y*side_12_x - equal_power_x*side_12_y
-        if not (
-            (weight_2 < 0.0) or (weight_3 < 0.0) or (weight_2 + weight_3 > 2.0*corner_area*corner_area)
-            or (
-                equal_power_x*equal_power_x
-                + equal_power_y*equal_power_y <= 4.0*corner_area*corner_area*reach_1*reach_1
-            )
-        ):
-            raise self._refusal("rods long enough to reach the plate")
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
-            raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
-        effective_lower_a3 = lower_a3
-        effective_upper_a3 = upper_a3
-        tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        machine_scale = arm_length + tcp_displacement  # characteristic length of the machine
-        tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
-        pivot_1_y = rail_y_1 - rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)
-        pivot_2_y = rail_y_2 - rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)
-        centre_1_to_2_y = pivot_2_y - pivot_1_y
-        pivot_3_y = rail_y_3 - rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)
-        centre_1_to_3_y = pivot_3_y - pivot_1_y
-        # rod 1: centre about which it swings
-        pivot_1_x = rail_x_1 - rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)
-        # rod 2: centre about which it swings
-        pivot_2_x = rail_x_2 - rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)
-        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        # rod 3: centre about which it swings
-        pivot_3_x = rail_x_3 - rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)
-        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_z = centre_1_to_2_x*centre_1_to_3_y - centre_1_to_2_y*centre_1_to_3_x
-        # assembly mode of this machine: the sign of the determinant of its rods
-        assembly_sign = (
-            (1.0 if tcp_above else -1.0)
-            if (rail_x_2 - rail_x_1)*(rail_y_3 - rail_y_1) - (rail_x_3 - rail_x_1)*(rail_y_2 - rail_y_1) > 0.0
-            else (-1.0 if tcp_above else 1.0)
-        )
-        normal_z_squared = normal_z*normal_z
-        part_of_normal_divisor = 1e-22*arm_length*arm_length*arm_length*arm_length
-        centre_1_to_3_y_times_normal_z = centre_1_to_3_y*normal_z
-        centre_1_to_2_y_times_normal_z = centre_1_to_2_y*normal_z
-        centre_1_to_3_x_times_normal_z = centre_1_to_3_x*normal_z
-        centre_1_to_2_x_times_normal_z = centre_1_to_2_x*normal_z
-        arm_length_squared = arm_length*arm_length
-        arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
-        part_of_projection_2 = 0.5*centre_1_to_2_x*centre_1_to_2_x + 0.5*centre_1_to_2_y*centre_1_to_2_y
-        part_of_projection_3 = 0.5*centre_1_to_3_x*centre_1_to_3_x + 0.5*centre_1_to_3_y*centre_1_to_3_y
-        one_by_arm_length = 1.0/arm_length
-        part_of_span_1_x_2 = sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)
-        part_of_span_1_x = rail_x_1 - rail_x_1*tcp_displacement/part_of_span_1_x_2
-        part_of_span_1_y = rail_y_1 - rail_y_1*tcp_displacement/part_of_span_1_x_2
-        part_of_span_2_x_2 = sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)
-        part_of_span_2_x = rail_x_2 - rail_x_2*tcp_displacement/part_of_span_2_x_2
-        part_of_span_2_y = rail_y_2 - rail_y_2*tcp_displacement/part_of_span_2_x_2
-        part_of_span_3_x_2 = sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)
-        part_of_span_3_x = rail_x_3 - rail_x_3*tcp_displacement/part_of_span_3_x_2
-        part_of_span_3_y = rail_y_3 - rail_y_3*tcp_displacement/part_of_span_3_x_2
-        part_of_type2_rods_coplanar = assembly_sign/(arm_length*arm_length*arm_length)
-        part_of_margin_rods_coplanar = arm_length*arm_length*arm_length
-        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
-        part_of_slope_1_by_x_2 = tcp_displacement/part_of_span_1_x_2 - 1.0
-        part_of_slope_1_by_x = -part_of_slope_1_by_x_2*rail_x_1
-        part_of_slope_1_by_y = -part_of_slope_1_by_x_2*rail_y_1
-        part_of_slope_2_by_x_2 = tcp_displacement/part_of_span_2_x_2 - 1.0
-        part_of_slope_2_by_x = -part_of_slope_2_by_x_2*rail_x_2
-        part_of_slope_2_by_y = -part_of_slope_2_by_x_2*rail_y_2
-        part_of_slope_3_by_x_2 = tcp_displacement/part_of_span_3_x_2 - 1.0
-        part_of_slope_3_by_x = -part_of_slope_3_by_x_2*rail_x_3
-        part_of_slope_3_by_y = -part_of_slope_3_by_x_2*rail_y_3
-        return Constants(
-            arm_length=arm_length, tcp_displacement=tcp_displacement, rail_x_1=rail_x_1, rail_y_1=rail_y_1,
-            rail_x_2=rail_x_2, rail_y_2=rail_y_2, rail_x_3=rail_x_3, rail_y_3=rail_y_3, offset_a1=offset_a1,
-            offset_a2=offset_a2, offset_a3=offset_a3, tcp_above=tcp_above, min_type2_margin=min_type2_margin,
-            check_limits=check_limits, lower_a1=effective_lower_a1, upper_a1=effective_upper_a1,
-            unlimited_a1=unlimited_a1, lowest_a1=lowest_a1, highest_a1=highest_a1, lower_a2=effective_lower_a2,
-            upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2,
-            lower_a3=effective_lower_a3, upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3,
-            highest_a3=highest_a3, machine_scale=machine_scale, tie=tie, pivot_1_y=pivot_1_y, pivot_2_y=pivot_2_y,
-            centre_1_to_2_y=centre_1_to_2_y, pivot_3_y=pivot_3_y, centre_1_to_3_y=centre_1_to_3_y,
-            pivot_1_x=pivot_1_x, pivot_2_x=pivot_2_x, centre_1_to_2_x=centre_1_to_2_x, pivot_3_x=pivot_3_x,
-            centre_1_to_3_x=centre_1_to_3_x, normal_z=normal_z, assembly_sign=assembly_sign,
-            normal_z_squared=normal_z_squared, part_of_normal_divisor=part_of_normal_divisor,
-            centre_1_to_3_y_times_normal_z=centre_1_to_3_y_times_normal_z,
-            centre_1_to_2_y_times_normal_z=centre_1_to_2_y_times_normal_z,
-            centre_1_to_3_x_times_normal_z=centre_1_to_3_x_times_normal_z,
-            centre_1_to_2_x_times_normal_z=centre_1_to_2_x_times_normal_z, arm_length_squared=arm_length_squared,
-            arm_length_squared_times_rounding=arm_length_squared_times_rounding,
-            part_of_projection_2=part_of_projection_2, part_of_projection_3=part_of_projection_3,
-            one_by_arm_length=one_by_arm_length, part_of_span_1_x=part_of_span_1_x, part_of_span_1_y=part_of_span_1_y,
-            part_of_span_2_x=part_of_span_2_x, part_of_span_2_y=part_of_span_2_y, part_of_span_3_x=part_of_span_3_x,
-            part_of_span_3_y=part_of_span_3_y, part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
-            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
-            part_of_determinant_divisor=part_of_determinant_divisor, part_of_slope_1_by_x=part_of_slope_1_by_x,
-            part_of_slope_1_by_y=part_of_slope_1_by_y, part_of_slope_2_by_x=part_of_slope_2_by_x,
-            part_of_slope_2_by_y=part_of_slope_2_by_y, part_of_slope_3_by_x=part_of_slope_3_by_x,
-            part_of_slope_3_by_y=part_of_slope_3_by_y,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        centre_1_to_2_x = k.centre_1_to_2_x
-        centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x_times_normal_z
-        centre_1_to_2_y = k.centre_1_to_2_y
-        centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y_times_normal_z
-        centre_1_to_3_x = k.centre_1_to_3_x
-        centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x_times_normal_z
-        centre_1_to_3_y = k.centre_1_to_3_y
-        centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y_times_normal_z
-        normal_z = k.normal_z
-        normal_z_squared = k.normal_z_squared
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        one_by_arm_length = k.one_by_arm_length
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_projection_2 = k.part_of_projection_2
-        part_of_projection_3 = k.part_of_projection_3
-        pivot_1_x = k.pivot_1_x
-        pivot_1_y = k.pivot_1_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        centre_1_to_2_x, centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x, k.centre_1_to_2_x_times_normal_z
+        centre_1_to_2_y, centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y, k.centre_1_to_2_y_times_normal_z
+        centre_1_to_3_x, centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x, k.centre_1_to_3_x_times_normal_z
+        centre_1_to_3_y, centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y, k.centre_1_to_3_y_times_normal_z
+        normal_z, normal_z_squared, offset_a1, offset_a2 = k.normal_z, k.normal_z_squared, k.offset_a1, k.offset_a2
+        offset_a3, one_by_arm_length = k.offset_a3, k.one_by_arm_length
+        part_of_normal_divisor, part_of_projection_2 = k.part_of_normal_divisor, k.part_of_projection_2
+        part_of_projection_3, pivot_1_x, pivot_1_y = k.part_of_projection_3, k.pivot_1_x, k.pivot_1_y
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
@@ -541,52 +342,43 @@ class TripodP3Z(OffsetKinematics):
         a3 = axis_a3 - offset_a3
         centre_1_to_3_z = a3 - a1
         # normal to the plane of the centres
-        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        projection_2 = part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - centre_1_to_2_y_times_normal_z)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y_times_normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y_times_normal_z) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x_times_normal_z)*projection_2
-                + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x_times_normal_z) * projection_2
+            + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
-                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
-        y = foot_y + pivot_1_y + height_by_normal*normal_y
-        z = a1 + foot_z + height_by_normal*normal_z
-        branch_carriage_1 = (a1 - z)*one_by_arm_length
-        branch_carriage_2 = (a2 - z)*one_by_arm_length
-        branch_carriage_3 = (a3 - z)*one_by_arm_length
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        y = foot_y + pivot_1_y + height_by_normal * normal_y
+        z = a1 + foot_z + height_by_normal * normal_z
+        branch_carriage_1 = (a1 - z) * one_by_arm_length
+        branch_carriage_2 = (a2 - z) * one_by_arm_length
+        branch_carriage_3 = (a3 - z) * one_by_arm_length
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -598,24 +390,15 @@ class TripodP3Z(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        centre_1_to_2_x = k.centre_1_to_2_x
-        centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x_times_normal_z
-        centre_1_to_2_y = k.centre_1_to_2_y
-        centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y_times_normal_z
-        centre_1_to_3_x = k.centre_1_to_3_x
-        centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x_times_normal_z
-        centre_1_to_3_y = k.centre_1_to_3_y
-        centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y_times_normal_z
-        normal_z_squared = k.normal_z_squared
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_projection_2 = k.part_of_projection_2
+        arm_length_squared_times_rounding, centre_1_to_2_x = k.arm_length_squared_times_rounding, k.centre_1_to_2_x
+        centre_1_to_2_x_times_normal_z, centre_1_to_2_y = k.centre_1_to_2_x_times_normal_z, k.centre_1_to_2_y
+        centre_1_to_2_y_times_normal_z, centre_1_to_3_x = k.centre_1_to_2_y_times_normal_z, k.centre_1_to_3_x
+        centre_1_to_3_x_times_normal_z, centre_1_to_3_y = k.centre_1_to_3_x_times_normal_z, k.centre_1_to_3_y
+        centre_1_to_3_y_times_normal_z, normal_z_squared = k.centre_1_to_3_y_times_normal_z, k.normal_z_squared
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        part_of_normal_divisor, part_of_projection_2 = k.part_of_normal_divisor, k.part_of_projection_2
         part_of_projection_3 = k.part_of_projection_3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
@@ -623,121 +406,100 @@ class TripodP3Z(OffsetKinematics):
         a3 = axis_a3 - offset_a3
         centre_1_to_3_z = a3 - a1
         # normal to the plane of the centres
-        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        projection_2 = part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - centre_1_to_2_y_times_normal_z)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y_times_normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y_times_normal_z) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x_times_normal_z)*projection_2
-                + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x_times_normal_z) * projection_2
+            + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
-                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_span_1_x = k.part_of_span_1_x
-        part_of_span_1_y = k.part_of_span_1_y
-        part_of_span_2_x = k.part_of_span_2_x
-        part_of_span_2_y = k.part_of_span_2_y
-        part_of_span_3_x = k.part_of_span_3_x
-        part_of_span_3_y = k.part_of_span_3_y
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
-        pivot_1_x = k.pivot_1_x
-        pivot_1_y = k.pivot_1_y
-        pivot_2_x = k.pivot_2_x
-        pivot_2_y = k.pivot_2_y
-        pivot_3_x = k.pivot_3_x
-        pivot_3_y = k.pivot_3_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
+        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared_times_rounding, min_type2_margin = k.arm_length_squared_times_rounding, k.min_type2_margin
+        offset_a1, offset_a2, offset_a3, part_of_span_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_span_1_x
+        part_of_span_1_y, part_of_span_2_x = k.part_of_span_1_y, k.part_of_span_2_x
+        part_of_span_2_y, part_of_span_3_x = k.part_of_span_2_y, k.part_of_span_3_x
+        part_of_span_3_y, part_of_type2_rods_coplanar = k.part_of_span_3_y, k.part_of_type2_rods_coplanar
+        pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
+        pivot_3_x, pivot_3_y = k.pivot_3_x, k.pivot_3_y
+        if not are_usable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x - part_of_span_1_x  # rod 1: known part of its vector
         span_1_y = y - part_of_span_1_y
-        radicand_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y  # quadratic equation for a1: rod 1
+        # quadratic equation for a1: rod 1
+        radicand_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_squared_times_rounding):
-            missing = abs(arm_length - sqrt(span_1_x*span_1_x + span_1_y*span_1_y))
+            missing = abs(arm_length - sqrt(span_1_x * span_1_x + span_1_y * span_1_y))
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_x = x - part_of_span_2_x  # rod 2: known part of its vector
         span_2_y = y - part_of_span_2_y
-        radicand_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y  # quadratic equation for a2: rod 2
+        # quadratic equation for a2: rod 2
+        radicand_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_squared_times_rounding):
-            missing = abs(arm_length - sqrt(span_2_x*span_2_x + span_2_y*span_2_y))
+            missing = abs(arm_length - sqrt(span_2_x * span_2_x + span_2_y * span_2_y))
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_3_x = x - part_of_span_3_x  # rod 3: known part of its vector
         span_3_y = y - part_of_span_3_y
-        radicand_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y  # quadratic equation for a3: rod 3
+        # quadratic equation for a3: rod 3
+        radicand_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         # rod 3 cannot reach
         if not (radicand_a3 >= -arm_length_squared_times_rounding):
-            missing = abs(arm_length - sqrt(span_3_x*span_3_x + span_3_y*span_3_y))
+            missing = abs(arm_length - sqrt(span_3_x * span_3_x + span_3_y * span_3_y))
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
-        a1 = z + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1
+        a1 = z + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1
         rod_1_z = z - a1
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        a2 = z + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
+        a2 = z + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         rod_2_z = z - a2
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        a3 = z + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)*sigma_carriage_3
+        a3 = z + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
         rod_3_z = z - a3
-        type2_rods_coplanar = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
-                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-            )
+        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -748,33 +510,14 @@ class TripodP3Z(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [u]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [u]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [u]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [u]", missing)
-        # limits of A3
-        if not (axis_a3 >= lowest_a3):
-            missing = lowest_a3 - axis_a3
-            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [u]", missing)
-        if not (axis_a3 <= highest_a3):
-            missing = axis_a3 - highest_a3
-            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [u]", missing)
+        highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
+        lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond("A1", axis_a1, lowest_a1, highest_a1, "u")
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond("A2", axis_a2, lowest_a2, highest_a2, "u")
+        if not lowest_a3 <= axis_a3 <= highest_a3:
+            return beyond("A3", axis_a3, lowest_a3, highest_a3, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
@@ -782,34 +525,18 @@ class TripodP3Z(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        centre_1_to_2_x = k.centre_1_to_2_x
-        centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x_times_normal_z
-        centre_1_to_2_y = k.centre_1_to_2_y
-        centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y_times_normal_z
-        centre_1_to_3_x = k.centre_1_to_3_x
-        centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x_times_normal_z
-        centre_1_to_3_y = k.centre_1_to_3_y
-        centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y_times_normal_z
-        normal_z = k.normal_z
-        normal_z_squared = k.normal_z_squared
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        one_by_arm_length = k.one_by_arm_length
-        part_of_margin_rods_coplanar = k.part_of_margin_rods_coplanar
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_projection_2 = k.part_of_projection_2
-        part_of_projection_3 = k.part_of_projection_3
-        pivot_1_x = k.pivot_1_x
-        pivot_1_y = k.pivot_1_y
-        pivot_2_x = k.pivot_2_x
-        pivot_2_y = k.pivot_2_y
-        pivot_3_x = k.pivot_3_x
-        pivot_3_y = k.pivot_3_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        centre_1_to_2_x, centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x, k.centre_1_to_2_x_times_normal_z
+        centre_1_to_2_y, centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y, k.centre_1_to_2_y_times_normal_z
+        centre_1_to_3_x, centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x, k.centre_1_to_3_x_times_normal_z
+        centre_1_to_3_y, centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y, k.centre_1_to_3_y_times_normal_z
+        normal_z, normal_z_squared, offset_a1, offset_a2 = k.normal_z, k.normal_z_squared, k.offset_a1, k.offset_a2
+        offset_a3, one_by_arm_length = k.offset_a3, k.one_by_arm_length
+        part_of_margin_rods_coplanar, part_of_normal_divisor = k.part_of_margin_rods_coplanar, k.part_of_normal_divisor
+        part_of_projection_2, part_of_projection_3 = k.part_of_projection_2, k.part_of_projection_3
+        pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
+        pivot_3_x, pivot_3_y = k.pivot_3_x, k.pivot_3_y
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
@@ -817,68 +544,57 @@ class TripodP3Z(OffsetKinematics):
         a3 = axis_a3 - offset_a3
         centre_1_to_3_z = a3 - a1
         # normal to the plane of the centres
-        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        projection_2 = part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - centre_1_to_2_y_times_normal_z)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y_times_normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y_times_normal_z) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x_times_normal_z)*projection_2
-                + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x_times_normal_z) * projection_2
+            + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
-                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        z = a1 + foot_z + height_by_normal*normal_z
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        z = a1 + foot_z + height_by_normal * normal_z
         rod_1_z = z - a1
-        margin_level_1 = -one_by_arm_length*rod_1_z
+        margin_level_1 = -one_by_arm_length * rod_1_z
         rod_2_z = z - a2
-        margin_level_2 = -one_by_arm_length*rod_2_z
+        margin_level_2 = -one_by_arm_length * rod_2_z
         rod_3_z = z - a3
-        margin_level_3 = -one_by_arm_length*rod_3_z
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        margin_level_3 = -one_by_arm_length * rod_3_z
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
         rod_1_x = x - pivot_1_x
-        y = foot_y + pivot_1_y + height_by_normal*normal_y
+        y = foot_y + pivot_1_y + height_by_normal * normal_y
         rod_1_y = y - pivot_1_y
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         margin_rods_coplanar = (
-            (
-                rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x) + (rod_1_y*rod_3_x - rod_1_x*rod_3_y)*rod_2_z
-                + (rod_1_x*rod_2_y - rod_1_y*rod_2_x)*rod_3_z
-            )
-            /part_of_margin_rods_coplanar
-        )
+            rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+            + (rod_1_y * rod_3_x - rod_1_x * rod_3_y) * rod_2_z
+            + (rod_1_x * rod_2_y - rod_1_y * rod_2_x) * rod_3_z
+        ) / part_of_margin_rods_coplanar
         return (margin_level_1, margin_level_2, margin_level_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -886,35 +602,19 @@ class TripodP3Z(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        centre_1_to_2_x = k.centre_1_to_2_x
-        centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x_times_normal_z
-        centre_1_to_2_y = k.centre_1_to_2_y
-        centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y_times_normal_z
-        centre_1_to_3_x = k.centre_1_to_3_x
-        centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x_times_normal_z
-        centre_1_to_3_y = k.centre_1_to_3_y
-        centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y_times_normal_z
-        normal_z = k.normal_z
-        normal_z_squared = k.normal_z_squared
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_determinant_divisor = k.part_of_determinant_divisor
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_projection_2 = k.part_of_projection_2
-        part_of_projection_3 = k.part_of_projection_3
-        part_of_slope_1_by_x = k.part_of_slope_1_by_x
-        part_of_slope_1_by_y = k.part_of_slope_1_by_y
-        part_of_slope_2_by_x = k.part_of_slope_2_by_x
-        part_of_slope_2_by_y = k.part_of_slope_2_by_y
-        part_of_slope_3_by_x = k.part_of_slope_3_by_x
-        part_of_slope_3_by_y = k.part_of_slope_3_by_y
-        pivot_1_x = k.pivot_1_x
-        pivot_1_y = k.pivot_1_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        centre_1_to_2_x, centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x, k.centre_1_to_2_x_times_normal_z
+        centre_1_to_2_y, centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y, k.centre_1_to_2_y_times_normal_z
+        centre_1_to_3_x, centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x, k.centre_1_to_3_x_times_normal_z
+        centre_1_to_3_y, centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y, k.centre_1_to_3_y_times_normal_z
+        normal_z, normal_z_squared, offset_a1, offset_a2 = k.normal_z, k.normal_z_squared, k.offset_a1, k.offset_a2
+        offset_a3, part_of_determinant_divisor = k.offset_a3, k.part_of_determinant_divisor
+        part_of_normal_divisor, part_of_projection_2 = k.part_of_normal_divisor, k.part_of_projection_2
+        part_of_projection_3, part_of_slope_1_by_x = k.part_of_projection_3, k.part_of_slope_1_by_x
+        part_of_slope_1_by_y, part_of_slope_2_by_x = k.part_of_slope_1_by_y, k.part_of_slope_2_by_x
+        part_of_slope_2_by_y, part_of_slope_3_by_x = k.part_of_slope_2_by_y, k.part_of_slope_3_by_x
+        part_of_slope_3_by_y, pivot_1_x, pivot_1_y = k.part_of_slope_3_by_y, k.pivot_1_x, k.pivot_1_y
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
@@ -922,87 +622,80 @@ class TripodP3Z(OffsetKinematics):
         a3 = axis_a3 - offset_a3
         centre_1_to_3_z = a3 - a1
         # normal to the plane of the centres
-        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        projection_2 = part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - centre_1_to_2_y_times_normal_z)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y_times_normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y_times_normal_z) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x_times_normal_z)*projection_2
-                + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x_times_normal_z) * projection_2
+            + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
-                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
-        slope_1_by_x = 2.0*(x - part_of_slope_1_by_x)
-        y = foot_y + pivot_1_y + height_by_normal*normal_y
-        slope_1_by_y = 2.0*(y - part_of_slope_1_by_y)
-        z = a1 + foot_z + height_by_normal*normal_z
-        slope_1_by_z = 2.0*(z - a1)
-        slope_2_by_y = 2.0*(y - part_of_slope_2_by_y)
-        slope_2_by_z = 2.0*(z - a2)
-        slope_3_by_y = 2.0*(y - part_of_slope_3_by_y)
-        slope_3_by_z = 2.0*(z - a3)
-        part_of_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y
-        slope_2_by_x = 2.0*(x - part_of_slope_2_by_x)
-        slope_3_by_x = 2.0*(x - part_of_slope_3_by_x)
-        part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
-        part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        slope_1_by_x = 2.0 * (x - part_of_slope_1_by_x)
+        y = foot_y + pivot_1_y + height_by_normal * normal_y
+        slope_1_by_y = 2.0 * (y - part_of_slope_1_by_y)
+        z = a1 + foot_z + height_by_normal * normal_z
+        slope_1_by_z = 2.0 * (z - a1)
+        slope_2_by_y = 2.0 * (y - part_of_slope_2_by_y)
+        slope_2_by_z = 2.0 * (z - a2)
+        slope_3_by_y = 2.0 * (y - part_of_slope_3_by_y)
+        slope_3_by_z = 2.0 * (z - a3)
+        part_of_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        slope_2_by_x = 2.0 * (x - part_of_slope_2_by_x)
+        slope_3_by_x = 2.0 * (x - part_of_slope_3_by_x)
+        part_of_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        part_of_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
-            part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
+            part_of_determinant * slope_1_by_x
+            + part_of_determinant_2 * slope_1_by_y
+            + part_of_determinant_3 * slope_1_by_z
         )
         # nothing controls the plate
         if not (abs(determinant) > part_of_determinant_divisor):
             return Status.IMPOSSIBLE
-        one_by_determinant = 1.0/determinant
-        slope_1_by_z_times_one_by_determinant = one_by_determinant*slope_1_by_z
-        slope_2_by_z_times_one_by_determinant = one_by_determinant*slope_2_by_z
-        slope_3_by_z_times_one_by_determinant = one_by_determinant*slope_3_by_z
+        one_by_determinant = 1.0 / determinant
+        slope_1_by_z_times_one_by_determinant = one_by_determinant * slope_1_by_z
+        slope_2_by_z_times_one_by_determinant = one_by_determinant * slope_2_by_z
+        slope_3_by_z_times_one_by_determinant = one_by_determinant * slope_3_by_z
         return (
             (
-                part_of_determinant*slope_1_by_z_times_one_by_determinant,
-                (slope_1_by_z*slope_3_by_y - slope_1_by_y*slope_3_by_z)*slope_2_by_z_times_one_by_determinant,
-                (slope_1_by_y*slope_2_by_z - slope_1_by_z*slope_2_by_y)*slope_3_by_z_times_one_by_determinant,
+                part_of_determinant * slope_1_by_z_times_one_by_determinant,
+                (slope_1_by_z * slope_3_by_y - slope_1_by_y * slope_3_by_z) * slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_y * slope_2_by_z - slope_1_by_z * slope_2_by_y) * slope_3_by_z_times_one_by_determinant,
             ),
             (
-                part_of_determinant_2*slope_1_by_z_times_one_by_determinant,
-                (slope_1_by_x*slope_3_by_z - slope_1_by_z*slope_3_by_x)*slope_2_by_z_times_one_by_determinant,
-                (slope_1_by_z*slope_2_by_x - slope_1_by_x*slope_2_by_z)*slope_3_by_z_times_one_by_determinant,
+                part_of_determinant_2 * slope_1_by_z_times_one_by_determinant,
+                (slope_1_by_x * slope_3_by_z - slope_1_by_z * slope_3_by_x) * slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_z * slope_2_by_x - slope_1_by_x * slope_2_by_z) * slope_3_by_z_times_one_by_determinant,
             ),
             (
-                part_of_determinant_3*slope_1_by_z_times_one_by_determinant,
-                (slope_1_by_y*slope_3_by_x - slope_1_by_x*slope_3_by_y)*slope_2_by_z_times_one_by_determinant,
-                (slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x)*slope_3_by_z_times_one_by_determinant,
+                part_of_determinant_3 * slope_1_by_z_times_one_by_determinant,
+                (slope_1_by_y * slope_3_by_x - slope_1_by_x * slope_3_by_y) * slope_2_by_z_times_one_by_determinant,
+                (slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x) * slope_3_by_z_times_one_by_determinant,
             ),
         )
 
@@ -1011,87 +704,72 @@ class TripodP3Z(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         k = self._constants
-        arm_length = k.arm_length
-        arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_span_1_x = k.part_of_span_1_x
-        part_of_span_1_y = k.part_of_span_1_y
-        part_of_span_2_x = k.part_of_span_2_x
-        part_of_span_2_y = k.part_of_span_2_y
-        part_of_span_3_x = k.part_of_span_3_x
-        part_of_span_3_y = k.part_of_span_3_y
-        part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
-        pivot_1_x = k.pivot_1_x
-        pivot_1_y = k.pivot_1_y
-        pivot_2_x = k.pivot_2_x
-        pivot_2_y = k.pivot_2_y
-        pivot_3_x = k.pivot_3_x
-        pivot_3_y = k.pivot_3_y
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
-        ):
+        arm_length, arm_length_squared = k.arm_length, k.arm_length_squared
+        arm_length_squared_times_rounding, min_type2_margin = k.arm_length_squared_times_rounding, k.min_type2_margin
+        offset_a1, offset_a2, offset_a3, part_of_span_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.part_of_span_1_x
+        part_of_span_1_y, part_of_span_2_x = k.part_of_span_1_y, k.part_of_span_2_x
+        part_of_span_2_y, part_of_span_3_x = k.part_of_span_2_y, k.part_of_span_3_x
+        part_of_span_3_y, part_of_type2_rods_coplanar = k.part_of_span_3_y, k.part_of_type2_rods_coplanar
+        pivot_1_x, pivot_1_y, pivot_2_x, pivot_2_y = k.pivot_1_x, k.pivot_1_y, k.pivot_2_x, k.pivot_2_y
+        pivot_3_x, pivot_3_y = k.pivot_3_x, k.pivot_3_y
+        if not are_usable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # position of the flange: the point less its offset
         span_1_x = flange_x - part_of_span_1_x  # rod 1: known part of its vector
         flange_y = y - point_y  # position of the flange: the point less its offset
         span_1_y = flange_y - part_of_span_1_y
-        radicand_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y  # quadratic equation for a1: rod 1
+        # quadratic equation for a1: rod 1
+        radicand_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_squared_times_rounding):
-            missing = abs(arm_length - sqrt(span_1_x*span_1_x + span_1_y*span_1_y))
+            missing = abs(arm_length - sqrt(span_1_x * span_1_x + span_1_y * span_1_y))
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_x = flange_x - part_of_span_2_x  # rod 2: known part of its vector
         span_2_y = flange_y - part_of_span_2_y
-        radicand_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y  # quadratic equation for a2: rod 2
+        # quadratic equation for a2: rod 2
+        radicand_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_squared_times_rounding):
-            missing = abs(arm_length - sqrt(span_2_x*span_2_x + span_2_y*span_2_y))
+            missing = abs(arm_length - sqrt(span_2_x * span_2_x + span_2_y * span_2_y))
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_3_x = flange_x - part_of_span_3_x  # rod 3: known part of its vector
         span_3_y = flange_y - part_of_span_3_y
-        radicand_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y  # quadratic equation for a3: rod 3
+        # quadratic equation for a3: rod 3
+        radicand_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         # rod 3 cannot reach
         if not (radicand_a3 >= -arm_length_squared_times_rounding):
-            missing = abs(arm_length - sqrt(span_3_x*span_3_x + span_3_y*span_3_y))
+            missing = abs(arm_length - sqrt(span_3_x * span_3_x + span_3_y * span_3_y))
             return Diagnosis(Status.UNREACHABLE, "rod 3 cannot reach [u]", missing)
         rod_1_x = flange_x - pivot_1_x
         rod_1_y = flange_y - pivot_1_y
         flange_z = z - point_z  # position of the flange: the point less its offset
-        a1 = flange_z + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0)*sigma_carriage_1
+        a1 = flange_z + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1
         rod_1_z = flange_z - a1
         rod_2_x = flange_x - pivot_2_x
         rod_2_y = flange_y - pivot_2_y
-        a2 = flange_z + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0)*sigma_carriage_2
+        a2 = flange_z + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         rod_2_z = flange_z - a2
         rod_3_x = flange_x - pivot_3_x
         rod_3_y = flange_y - pivot_3_y
-        a3 = flange_z + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0)*sigma_carriage_3
+        a3 = flange_z + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
         rod_3_z = flange_z - a3
-        type2_rods_coplanar = (
-            part_of_type2_rods_coplanar
-            *(
-                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
-                + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
-            )
+        type2_rods_coplanar = part_of_type2_rods_coplanar * (
+            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * rod_1_y
+            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
             )
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -1103,27 +781,16 @@ class TripodP3Z(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         arm_length_squared = k.arm_length_squared
-        arm_length_squared_times_rounding = k.arm_length_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        centre_1_to_2_x = k.centre_1_to_2_x
-        centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x_times_normal_z
-        centre_1_to_2_y = k.centre_1_to_2_y
-        centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y_times_normal_z
-        centre_1_to_3_x = k.centre_1_to_3_x
-        centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x_times_normal_z
-        centre_1_to_3_y = k.centre_1_to_3_y
-        centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y_times_normal_z
-        normal_z = k.normal_z
-        normal_z_squared = k.normal_z_squared
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        one_by_arm_length = k.one_by_arm_length
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_projection_2 = k.part_of_projection_2
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        centre_1_to_2_x, centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x, k.centre_1_to_2_x_times_normal_z
+        centre_1_to_2_y, centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y, k.centre_1_to_2_y_times_normal_z
+        centre_1_to_3_x, centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x, k.centre_1_to_3_x_times_normal_z
+        centre_1_to_3_y, centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y, k.centre_1_to_3_y_times_normal_z
+        normal_z, normal_z_squared, offset_a1, offset_a2 = k.normal_z, k.normal_z_squared, k.offset_a1, k.offset_a2
+        offset_a3, one_by_arm_length = k.offset_a3, k.one_by_arm_length
+        part_of_normal_divisor, part_of_projection_2 = k.part_of_normal_divisor, k.part_of_projection_2
         part_of_projection_3 = k.part_of_projection_3
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
@@ -1131,50 +798,41 @@ class TripodP3Z(OffsetKinematics):
         a3 = axis_a3 - offset_a3
         centre_1_to_3_z = a3 - a1
         # normal to the plane of the centres
-        normal_x = centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*centre_1_to_3_y
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_square = normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # squared length of the normal
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        projection_2 = part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - centre_1_to_2_y_times_normal_z)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y_times_normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y_times_normal_z) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x_times_normal_z)*projection_2
-                + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x_times_normal_z) * projection_2
+            + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - centre_1_to_3_y*normal_x)*projection_2
-                + (centre_1_to_2_y*normal_x - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        flange_z = a1 + foot_z + height_by_normal*normal_z
-        branch_carriage_1 = (a1 - flange_z)*one_by_arm_length
-        branch_carriage_2 = (a2 - flange_z)*one_by_arm_length
-        branch_carriage_3 = (a3 - flange_z)*one_by_arm_length
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        flange_z = a1 + foot_z + height_by_normal * normal_z
+        branch_carriage_1 = (a1 - flange_z) * one_by_arm_length
+        branch_carriage_2 = (a2 - flange_z) * one_by_arm_length
+        branch_carriage_3 = (a3 - flange_z) * one_by_arm_length
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -1188,8 +846,7 @@ class TripodP3Z(OffsetKinematics):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     @property
     def _criteria(self) -> tuple[Criterion, ...]:

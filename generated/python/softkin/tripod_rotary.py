@@ -36,92 +36,98 @@ Verified at 120 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.tripod_rotary import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    arm_length_1: float
-    arm_length_2: float
-    arm_1_radius: float
-    stewart_radius: float
-    distance: float
-    max_angle_ball_joint: float
-    offset_a1: float
-    offset_a2: float
-    offset_a3: float
-    tcp_above: bool
-    min_type2_margin: float
-    check_limits: bool
-    lower_a1: float
-    upper_a1: float
-    unlimited_a1: bool
-    lowest_a1: float
-    highest_a1: float
-    single_a1: bool
-    mid_a1: float
-    lower_a2: float
-    upper_a2: float
-    unlimited_a2: bool
-    lowest_a2: float
-    highest_a2: float
-    single_a2: bool
-    mid_a2: float
-    lower_a3: float
-    upper_a3: float
-    unlimited_a3: bool
-    lowest_a3: float
-    highest_a3: float
-    single_a3: bool
-    mid_a3: float
-    machine_scale: float
-    fixed_length_1: float
-    fixed_length_2: float
-    assembly_sign: float
-    sin_max_angle_ball_joint: float
-    part_of_normal_divisor: float
-    arm_length_2_squared: float
-    arm_length_2_squared_times_rounding: float
-    arm_length_1_times_root_of_3_times_half: float
-    part_of_pivot_2_y: float
-    fixed_length_1_minus_arm_1_radius: float
-    half_arm_length_1: float
-    part_of_pivot_2_x: float
-    half_by_arm_length_2: float
-    arm_length_1_times_shortest_link: float
-    part_of_scaled_cosine_a1: float
-    part_of_divisor_a2: float
-    twice_arm_length_1: float
-    part_of_type2_rods_coplanar: float
-    root_of_3_times_half_by_arm_length_2: float
-    part_of_margin_rods_coplanar: float
-    part_of_determinant_divisor: float
-    part_of_slope_1_by_x: float
-    arm_length_1_times_root_of_3: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        arm_length_1, arm_length_2, arm_1_radius = p["arm_length_1"], p["arm_length_2"], p["arm_1_radius"]
+        stewart_radius, distance, max_angle_ball_joint = p["stewart_radius"], p["distance"], p["max_angle_ball_joint"]
+        offset_a1, offset_a2, offset_a3 = p["offset_a1"], p["offset_a2"], p["offset_a3"]
+        tcp_above, min_type2_margin = bool(p["tcp_above"]), p["min_type2_margin"]
+        if not (2.0 * stewart_radius >= distance):
+            raise machine._refusal("stewart_radius must be at least half of distance", "stewart_radius", "distance")
+        if not (
+            abs(arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            < arm_length_2
+        ):
+            raise machine._refusal(
+                "the rods must reach the plate with horizontal arms",
+                "arm_length_1",
+                "arm_length_2",
+                "arm_1_radius",
+                "stewart_radius",
+                "distance",
+            )
+        self.lowest_a1, self.highest_a1, self.single_a1, self.mid_a1 = machine._window("a1")
+        self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
+        self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
+        # characteristic length of the machine
+        machine_scale = arm_1_radius + arm_length_1 + arm_length_2 + distance + stewart_radius
+        # a length made of parameters
+        fixed_length_1 = 0.5 * root(-(distance + 2.0 * stewart_radius) * (distance - 2.0 * stewart_radius))
+        # a length made of parameters
+        fixed_length_2 = root(
+            -(arm_1_radius + arm_length_1 + arm_length_2 - fixed_length_1)
+            * (arm_1_radius + arm_length_1 - arm_length_2 - fixed_length_1)
+        )
+        # assembly mode of this machine: the sign of the determinant of its rods
+        assembly_sign = 1.0 if tcp_above else -1.0
+        sin_max_angle_ball_joint = sin(DEGREE * max_angle_ball_joint)
+        part_of_normal_divisor = 1e-22 * arm_length_2 * arm_length_2 * arm_length_2 * arm_length_2
+        arm_length_2_squared = arm_length_2 * arm_length_2
+        arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
+        root_of_3 = root(3.0)
+        arm_length_1_times_root_of_3_times_half = 0.5 * arm_length_1 * root_of_3
+        part_of_pivot_2_y = 0.5 * fixed_length_1 * root_of_3 - 0.5 * arm_1_radius * root_of_3
+        fixed_length_1_minus_arm_1_radius = fixed_length_1 - arm_1_radius
+        half_arm_length_1 = 0.5 * arm_length_1
+        part_of_pivot_2_x = 0.5 * arm_1_radius - 0.5 * fixed_length_1
+        half_by_arm_length_2 = 0.5 / arm_length_2
+        arm_length_1_times_shortest_link = 1e-9 * arm_length_1
+        part_of_scaled_cosine_a1 = 2.0 * arm_length_1 * fixed_length_1_minus_arm_1_radius
+        part_of_divisor_a2 = 5e-10 * arm_length_1
+        twice_arm_length_1 = 2.0 * arm_length_1
+        part_of_type2_rods_coplanar = assembly_sign / (arm_length_2 * arm_length_2 * arm_length_2)
+        root_of_3_times_half_by_arm_length_2 = 0.5 * root_of_3 / arm_length_2
+        part_of_margin_rods_coplanar = arm_length_2 * arm_length_2 * arm_length_2
+        part_of_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        part_of_slope_1_by_x = 2.0 * fixed_length_1 - 2.0 * arm_1_radius
+        arm_length_1_times_root_of_3 = arm_length_1 * root_of_3
+        self.arm_length_1, self.arm_length_2, self.arm_1_radius = arm_length_1, arm_length_2, arm_1_radius
+        self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
+        self.min_type2_margin, self.fixed_length_1 = min_type2_margin, fixed_length_1
+        self.fixed_length_2, self.assembly_sign = fixed_length_2, assembly_sign
+        self.sin_max_angle_ball_joint, self.part_of_normal_divisor = sin_max_angle_ball_joint, part_of_normal_divisor
+        self.arm_length_2_squared = arm_length_2_squared
+        self.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding
+        self.arm_length_1_times_root_of_3_times_half = arm_length_1_times_root_of_3_times_half
+        self.part_of_pivot_2_y = part_of_pivot_2_y
+        self.fixed_length_1_minus_arm_1_radius = fixed_length_1_minus_arm_1_radius
+        self.half_arm_length_1, self.part_of_pivot_2_x = half_arm_length_1, part_of_pivot_2_x
+        self.half_by_arm_length_2 = half_by_arm_length_2
+        self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
+        self.part_of_scaled_cosine_a1, self.part_of_divisor_a2 = part_of_scaled_cosine_a1, part_of_divisor_a2
+        self.twice_arm_length_1, self.part_of_type2_rods_coplanar = twice_arm_length_1, part_of_type2_rods_coplanar
+        self.root_of_3_times_half_by_arm_length_2 = root_of_3_times_half_by_arm_length_2
+        self.part_of_margin_rods_coplanar = part_of_margin_rods_coplanar
+        self.part_of_determinant_divisor, self.part_of_slope_1_by_x = part_of_determinant_divisor, part_of_slope_1_by_x
+        self.arm_length_1_times_root_of_3 = arm_length_1_times_root_of_3
 
 
 class TripodRotary(OffsetKinematics):
@@ -130,99 +136,60 @@ class TripodRotary(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
     AXES = (
         Axis(
-            name="A1", kind="rotary", unit="deg", meaning="Arm 1, from horizontal outward; positive is down",
+            name="A1",
+            kind="rotary",
+            unit="deg",
+            meaning="Arm 1, from horizontal outward; positive is down",
             multi_turn=True,
         ),
         Axis(
-            name="A2", kind="rotary", unit="deg", meaning="Arm 2, from horizontal outward; positive is down",
+            name="A2",
+            kind="rotary",
+            unit="deg",
+            meaning="Arm 2, from horizontal outward; positive is down",
             multi_turn=True,
         ),
         Axis(
-            name="A3", kind="rotary", unit="deg", meaning="Arm 3, from horizontal outward; positive is down",
+            name="A3",
+            kind="rotary",
+            unit="deg",
+            meaning="Arm 3, from horizontal outward; positive is down",
             multi_turn=True,
         ),
     )
     PARAMETERS = (
-        Parameter(
-            name="arm_length_1", kind="length", unit="u", meaning="Length of the upper arms", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="arm_length_2", kind="length", unit="u", meaning="Length of the rods", low=0.0,
-            high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="arm_1_radius", kind="length", unit="u", meaning="Radius of the circle of the drive axes",
-            low=0.0, high=1000000000.0, low_is_open=True, default=None,
-        ),
-        Parameter(
-            name="stewart_radius", kind="distance", unit="u",
-            meaning="Radius of the circle of the six rod joints on the plate", low=0.0, high=1000000000.0,
-            low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="distance", kind="distance", unit="u", meaning="Distance of the two rods of a pair", low=0.0,
-            high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="max_angle_ball_joint", kind="angle", unit="deg",
-            meaning="Largest swing of a rod out of the plane of its arm", low=0.0, high=90.0, low_is_open=False,
+        Parameter.of("length", "arm_length_1", "Length of the upper arms"),
+        Parameter.of("length", "arm_length_2", "Length of the rods"),
+        Parameter.of("length", "arm_1_radius", "Radius of the circle of the drive axes"),
+        Parameter.of("distance", "stewart_radius", "Radius of the circle of the six rod joints on the plate", low=0.0),
+        Parameter.of("distance", "distance", "Distance of the two rods of a pair", low=0.0),
+        Parameter.of(
+            "angle",
+            "max_angle_ball_joint",
+            "Largest swing of a rod out of the plane of its arm",
+            low=0.0,
+            high=90.0,
             default=None,
         ),
-        Parameter(
-            name="offset_a1", kind="angle", unit="deg", meaning="A1: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+        Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a3", "A3: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "tcp_above", "assembly mode: above instead of below"),
+        Parameter.of(
+            "ratio", "min_type2_margin", "least margin to a type 2 singularity (no unit), 0: off", default=0.001
         ),
-        Parameter(
-            name="offset_a2", kind="angle", unit="deg", meaning="A2: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a3", kind="angle", unit="deg", meaning="A3: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a1", kind="angle", unit="deg", meaning="A1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a1", kind="angle", unit="deg", meaning="A1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a2", kind="angle", unit="deg", meaning="A2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a2", kind="angle", unit="deg", meaning="A2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a3", kind="angle", unit="deg", meaning="A3: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a3", kind="angle", unit="deg", meaning="A3: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tcp_above", kind="flag", unit="", meaning="assembly mode: above instead of below", low=0.0,
-            high=1.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="min_type2_margin", kind="ratio", unit="1",
-            meaning="least margin to a type 2 singularity (no unit), 0: off", low=0.0, high=1.0,
-            low_is_open=False, default=0.001,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="knee_1", kind="branch", branches=("outward", "inward"), default=1),
@@ -243,11 +210,26 @@ class TripodRotary(OffsetKinematics):
     DISTANCE_AXES = (0, 1, 2)
 
     def __init__(
-        self, *, arm_length_1: float, arm_length_2: float, arm_1_radius: float, stewart_radius: float = 0.0,
-        distance: float = 0.0, max_angle_ball_joint: float, offset_a1: float = 0.0, offset_a2: float = 0.0,
-        offset_a3: float = 0.0, lower_a1: float = 0.0, upper_a1: float = 0.0, lower_a2: float = 0.0,
-        upper_a2: float = 0.0, lower_a3: float = 0.0, upper_a3: float = 0.0, tcp_above: bool = False,
-        min_type2_margin: float = 0.001, check_limits: bool = True,
+        self,
+        *,
+        arm_length_1: float,
+        arm_length_2: float,
+        arm_1_radius: float,
+        stewart_radius: float = 0.0,
+        distance: float = 0.0,
+        max_angle_ball_joint: float,
+        offset_a1: float = 0.0,
+        offset_a2: float = 0.0,
+        offset_a3: float = 0.0,
+        lower_a1: float = 0.0,
+        upper_a1: float = 0.0,
+        lower_a2: float = 0.0,
+        upper_a2: float = 0.0,
+        lower_a3: float = 0.0,
+        upper_a3: float = 0.0,
+        tcp_above: bool = False,
+        min_type2_margin: float = 0.001,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -270,172 +252,9 @@ class TripodRotary(OffsetKinematics):
         min_type2_margin: least margin to a type 2 singularity (no unit), 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            arm_length_1, arm_length_2, arm_1_radius, stewart_radius, distance, max_angle_ball_joint, offset_a1,
-            offset_a2, offset_a3, lower_a1, upper_a1, lower_a2, upper_a2, lower_a3, upper_a3, tcp_above,
-            min_type2_margin, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, arm_length_1: float, arm_length_2: float, arm_1_radius: float, stewart_radius: float,
-        distance: float, max_angle_ball_joint: float, offset_a1: float, offset_a2: float, offset_a3: float,
-        lower_a1: float, upper_a1: float, lower_a2: float, upper_a2: float, lower_a3: float, upper_a3: float,
-        tcp_above: bool, min_type2_margin: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (arm_length_1 <= 1e9 and arm_length_1 > 0.0):
-            raise self._refusal("arm_length_1: Length of the upper arms", arm_length_1=arm_length_1)
-        if not (arm_length_2 <= 1e9 and arm_length_2 > 0.0):
-            raise self._refusal("arm_length_2: Length of the rods", arm_length_2=arm_length_2)
-        if not (arm_1_radius <= 1e9 and arm_1_radius > 0.0):
-            raise self._refusal("arm_1_radius: Radius of the circle of the drive axes", arm_1_radius=arm_1_radius)
-        if not (stewart_radius >= 0.0 and stewart_radius <= 1e9):
-            raise self._refusal(
-                "stewart_radius: Radius of the circle of the six rod joints on the plate",
-                stewart_radius=stewart_radius,
-            )
-        if not (distance >= 0.0 and distance <= 1e9):
-            raise self._refusal("distance: Distance of the two rods of a pair", distance=distance)
-        if not (max_angle_ball_joint >= 0.0 and max_angle_ball_joint <= 90.0):
-            raise self._refusal(
-                "max_angle_ball_joint: Largest swing of a rod out of the plane of its arm",
-                max_angle_ball_joint=max_angle_ball_joint,
-            )
-        if not (offset_a1 >= -1e9 and offset_a1 <= 1e9):
-            raise self._refusal("offset_a1: A1: axis value at the kinematic zero position", offset_a1=offset_a1)
-        if not (offset_a2 >= -1e9 and offset_a2 <= 1e9):
-            raise self._refusal("offset_a2: A2: axis value at the kinematic zero position", offset_a2=offset_a2)
-        if not (offset_a3 >= -1e9 and offset_a3 <= 1e9):
-            raise self._refusal("offset_a3: A3: axis value at the kinematic zero position", offset_a3=offset_a3)
-        if not (lower_a1 >= -1e9 and lower_a1 <= 1e9):
-            raise self._refusal("lower_a1: A1: lower limit of the axis, both 0: no limit", lower_a1=lower_a1)
-        if not (upper_a1 >= -1e9 and upper_a1 <= 1e9):
-            raise self._refusal("upper_a1: A1: upper limit of the axis, both 0: no limit", upper_a1=upper_a1)
-        if not (lower_a2 >= -1e9 and lower_a2 <= 1e9):
-            raise self._refusal("lower_a2: A2: lower limit of the axis, both 0: no limit", lower_a2=lower_a2)
-        if not (upper_a2 >= -1e9 and upper_a2 <= 1e9):
-            raise self._refusal("upper_a2: A2: upper limit of the axis, both 0: no limit", upper_a2=upper_a2)
-        if not (lower_a3 >= -1e9 and lower_a3 <= 1e9):
-            raise self._refusal("lower_a3: A3: lower limit of the axis, both 0: no limit", lower_a3=lower_a3)
-        if not (upper_a3 >= -1e9 and upper_a3 <= 1e9):
-            raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
-        if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
-            raise self._refusal(
-                "min_type2_margin: least margin to a type 2 singularity (no unit), 0: off",
-                min_type2_margin=min_type2_margin,
-            )
-        if not (2.0*stewart_radius >= distance):
-            raise self._refusal(
-                "stewart_radius must be at least half of distance", stewart_radius=stewart_radius, distance=distance,
-            )
-        if not (
-            abs(
-                arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance)
-            ) < arm_length_2
-        ):
-            raise self._refusal(
-                "the rods must reach the plate with horizontal arms", arm_length_1=arm_length_1,
-                arm_length_2=arm_length_2, arm_1_radius=arm_1_radius, stewart_radius=stewart_radius,
-                distance=distance,
-            )
-        if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
-            raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
-        unlimited_a1 = abs(lower_a1) + abs(upper_a1) <= 0.0  # a1: whether it has no limits
-        effective_lower_a1 = lower_a1
-        effective_upper_a1 = upper_a1
-        tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
-        lowest_a1 = -1e12 if unlimited_a1 else effective_lower_a1 - tolerance_a1
-        highest_a1 = 1e12 if unlimited_a1 else effective_upper_a1 + tolerance_a1
-        # at most one turn is inside the limits
-        single_a1 = (not unlimited_a1) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
-        mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
-        if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
-            raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
-        unlimited_a2 = abs(lower_a2) + abs(upper_a2) <= 0.0  # a2: whether it has no limits
-        effective_lower_a2 = lower_a2
-        effective_upper_a2 = upper_a2
-        tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
-        lowest_a2 = -1e12 if unlimited_a2 else effective_lower_a2 - tolerance_a2
-        highest_a2 = 1e12 if unlimited_a2 else effective_upper_a2 + tolerance_a2
-        # at most one turn is inside the limits
-        single_a2 = (not unlimited_a2) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
-        mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
-        if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
-            raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
-        unlimited_a3 = abs(lower_a3) + abs(upper_a3) <= 0.0  # a3: whether it has no limits
-        effective_lower_a3 = lower_a3
-        effective_upper_a3 = upper_a3
-        tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
-        lowest_a3 = -1e12 if unlimited_a3 else effective_lower_a3 - tolerance_a3
-        highest_a3 = 1e12 if unlimited_a3 else effective_upper_a3 + tolerance_a3
-        # at most one turn is inside the limits
-        single_a3 = (not unlimited_a3) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
-        mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
-        # characteristic length of the machine
-        machine_scale = arm_1_radius + arm_length_1 + arm_length_2 + distance + stewart_radius
-        # a length made of parameters
-        fixed_length_1 = 0.5*root(-(distance + 2.0*stewart_radius)*(distance - 2.0*stewart_radius))
-        # a length made of parameters
-        fixed_length_2 = root(
-            -(arm_1_radius + arm_length_1 + arm_length_2 - fixed_length_1)
-            *(arm_1_radius + arm_length_1 - arm_length_2 - fixed_length_1)
-        )
-        # assembly mode of this machine: the sign of the determinant of its rods
-        assembly_sign = 1.0 if tcp_above else -1.0
-        sin_max_angle_ball_joint = sin(DEGREE*max_angle_ball_joint)
-        part_of_normal_divisor = 1e-22*arm_length_2*arm_length_2*arm_length_2*arm_length_2
-        arm_length_2_squared = arm_length_2*arm_length_2
-        arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
-        root_of_3 = root(3.0)
-        arm_length_1_times_root_of_3_times_half = 0.5*arm_length_1*root_of_3
-        part_of_pivot_2_y = 0.5*fixed_length_1*root_of_3 - 0.5*arm_1_radius*root_of_3
-        fixed_length_1_minus_arm_1_radius = fixed_length_1 - arm_1_radius
-        half_arm_length_1 = 0.5*arm_length_1
-        part_of_pivot_2_x = 0.5*arm_1_radius - 0.5*fixed_length_1
-        half_by_arm_length_2 = 0.5/arm_length_2
-        arm_length_1_times_shortest_link = 1e-9*arm_length_1
-        part_of_scaled_cosine_a1 = 2.0*arm_length_1*fixed_length_1_minus_arm_1_radius
-        part_of_divisor_a2 = 5e-10*arm_length_1
-        twice_arm_length_1 = 2.0*arm_length_1
-        part_of_type2_rods_coplanar = assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
-        root_of_3_times_half_by_arm_length_2 = 0.5*root_of_3/arm_length_2
-        part_of_margin_rods_coplanar = arm_length_2*arm_length_2*arm_length_2
-        part_of_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale
-        part_of_slope_1_by_x = 2.0*fixed_length_1 - 2.0*arm_1_radius
-        arm_length_1_times_root_of_3 = arm_length_1*root_of_3
-        return Constants(
-            arm_length_1=arm_length_1, arm_length_2=arm_length_2, arm_1_radius=arm_1_radius,
-            stewart_radius=stewart_radius, distance=distance, max_angle_ball_joint=max_angle_ball_joint,
-            offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3, tcp_above=tcp_above,
-            min_type2_margin=min_type2_margin, check_limits=check_limits, lower_a1=effective_lower_a1,
-            upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1, highest_a1=highest_a1,
-            single_a1=single_a1, mid_a1=mid_a1, lower_a2=effective_lower_a2, upper_a2=effective_upper_a2,
-            unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2,
-            lower_a3=effective_lower_a3, upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3,
-            highest_a3=highest_a3, single_a3=single_a3, mid_a3=mid_a3, machine_scale=machine_scale,
-            fixed_length_1=fixed_length_1, fixed_length_2=fixed_length_2, assembly_sign=assembly_sign,
-            sin_max_angle_ball_joint=sin_max_angle_ball_joint, part_of_normal_divisor=part_of_normal_divisor,
-            arm_length_2_squared=arm_length_2_squared,
-            arm_length_2_squared_times_rounding=arm_length_2_squared_times_rounding,
-            arm_length_1_times_root_of_3_times_half=arm_length_1_times_root_of_3_times_half,
-            part_of_pivot_2_y=part_of_pivot_2_y, fixed_length_1_minus_arm_1_radius=fixed_length_1_minus_arm_1_radius,
-            half_arm_length_1=half_arm_length_1, part_of_pivot_2_x=part_of_pivot_2_x,
-            half_by_arm_length_2=half_by_arm_length_2,
-            arm_length_1_times_shortest_link=arm_length_1_times_shortest_link,
-            part_of_scaled_cosine_a1=part_of_scaled_cosine_a1, part_of_divisor_a2=part_of_divisor_a2,
-            twice_arm_length_1=twice_arm_length_1, part_of_type2_rods_coplanar=part_of_type2_rods_coplanar,
-            root_of_3_times_half_by_arm_length_2=root_of_3_times_half_by_arm_length_2,
-            part_of_margin_rods_coplanar=part_of_margin_rods_coplanar,
-            part_of_determinant_divisor=part_of_determinant_divisor, part_of_slope_1_by_x=part_of_slope_1_by_x,
-            arm_length_1_times_root_of_3=arm_length_1_times_root_of_3,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -443,97 +262,84 @@ class TripodRotary(OffsetKinematics):
         k = self._constants
         arm_length_1 = k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_2 = k.arm_length_2
-        arm_length_2_squared = k.arm_length_2_squared
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
-        fixed_length_2 = k.fixed_length_2
-        half_arm_length_1 = k.half_arm_length_1
-        half_by_arm_length_2 = k.half_by_arm_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        arm_length_2, arm_length_2_squared = k.arm_length_2, k.arm_length_2_squared
+        arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
+        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
+        half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
+        offset_a2, offset_a3, part_of_normal_divisor = k.offset_a2, k.offset_a3, k.part_of_normal_divisor
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
+        pivot_1_z = fixed_length_2 - arm_length_1 * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
+        pivot_2_z = fixed_length_2 - arm_length_1 * sin_a2
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3
+        pivot_3_z = fixed_length_2 - arm_length_1 * sin_a3
         centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
-                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_2_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
-        y = foot_y + height_by_normal*normal_y
-        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        y = foot_y + height_by_normal * normal_y
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         span_1_z = z - fixed_length_2
-        branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
+        branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / arm_length_2
         span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
-        branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
+        branch_knee_2 = ((root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2) * half_by_arm_length_2
         span_3_y = part_of_pivot_2_y + y
-        branch_knee_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)*half_by_arm_length_2
+        branch_knee_3 = -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * half_by_arm_length_2
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -548,82 +354,72 @@ class TripodRotary(OffsetKinematics):
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
         arm_length_2_squared = k.arm_length_2_squared
         arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
-        fixed_length_2 = k.fixed_length_2
-        half_arm_length_1 = k.half_arm_length_1
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
+        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
+        half_arm_length_1, offset_a1, offset_a2, offset_a3 = k.half_arm_length_1, k.offset_a1, k.offset_a2, k.offset_a3
+        part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
+        pivot_1_z = fixed_length_2 - arm_length_1 * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
+        pivot_2_z = fixed_length_2 - arm_length_1 * sin_a2
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3
+        pivot_3_z = fixed_length_2 - arm_length_1 * sin_a3
         centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
-                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_2_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -633,70 +429,55 @@ class TripodRotary(OffsetKinematics):
         k = self._constants
         arm_length_1 = k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_1_times_shortest_link = k.arm_length_1_times_shortest_link
-        arm_length_2 = k.arm_length_2
+        arm_length_1_times_shortest_link, arm_length_2 = k.arm_length_1_times_shortest_link, k.arm_length_2
         arm_length_2_squared = k.arm_length_2_squared
-        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
-        fixed_length_2 = k.fixed_length_2
-        half_arm_length_1 = k.half_arm_length_1
-        half_by_arm_length_2 = k.half_by_arm_length_2
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_divisor_a2 = k.part_of_divisor_a2
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
+        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
+        half_arm_length_1, half_by_arm_length_2, mid_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.mid_a1
+        mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
+        offset_a2, offset_a3, part_of_divisor_a2 = k.offset_a2, k.offset_a3, k.part_of_divisor_a2
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
         part_of_scaled_cosine_a1 = k.part_of_scaled_cosine_a1
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
-        sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        twice_arm_length_1 = k.twice_arm_length_1
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
-            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
-        ):
+        sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
+        single_a3, twice_arm_length_1 = k.single_a3, k.twice_arm_length_1
+        if not are_usable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         span_1_z = z - fixed_length_2
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length of the arm that a1 turns
+        effective_a1 = sqrt(span_1_x * span_1_x + span_1_z * span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z)*z - part_of_scaled_cosine_a1
+        part_of_scaled_cosine_a1_2 = (fixed_length_2 - span_1_z) * z - part_of_scaled_cosine_a1
         # cosine, times the scale, without cancellation
-        scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
-        twice_arm_length_1_times_effective_a1 = effective_a1*twice_arm_length_1
+        scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
+        twice_arm_length_1_times_effective_a1 = effective_a1 * twice_arm_length_1
         # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
                     arm_length_2_squared
-                    + 0.5*abs(
-                        (arm_length_1 - effective_a1)*(arm_length_1 - effective_a1)
-                        - (arm_length_2 + y)*(arm_length_2 - y)
+                    + 0.5
+                    * abs(
+                        (arm_length_1 - effective_a1) * (arm_length_1 - effective_a1)
+                        - (arm_length_2 + y) * (arm_length_2 - y)
                     )
-                    + 0.5*(arm_length_1 - effective_a1)*(arm_length_1 - effective_a1)
-                    + 0.5*(arm_length_1 + effective_a1)*(arm_length_1 + effective_a1)
-                    + (y - arm_length_2)*(arm_length_2 + y)
-                    - 0.5*abs(
-                        (arm_length_1 + effective_a1)*(arm_length_1 + effective_a1)
-                        - (arm_length_2 + y)*(arm_length_2 - y)
+                    + 0.5 * (arm_length_1 - effective_a1) * (arm_length_1 - effective_a1)
+                    + 0.5 * (arm_length_1 + effective_a1) * (arm_length_1 + effective_a1)
+                    + (y - arm_length_2) * (arm_length_2 + y)
+                    - 0.5
+                    * abs(
+                        (arm_length_1 + effective_a1) * (arm_length_1 + effective_a1)
+                        - (arm_length_2 + y) * (arm_length_2 - y)
                     )
                 )
             )
@@ -704,188 +485,175 @@ class TripodRotary(OffsetKinematics):
         span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2*span_2_y
-        across_a2 = 2.0*span_1_z
-        across_a2_squared = across_a2*across_a2
-        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length of the arm that a2 turns
+        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        across_a2 = 2.0 * span_1_z
+        across_a2_squared = across_a2 * across_a2
+        effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x)*x
+        part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (part_of_pivot_2_x - span_2_x) * x
         # cosine, times the scale, without cancellation
-        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y)*y - part_of_scaled_cosine_a2
-        arm_length_1_times_effective_a2 = arm_length_1*effective_a2
+        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y) * y - part_of_scaled_cosine_a2
+        arm_length_1_times_effective_a2 = arm_length_1 * effective_a2
         # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
                     arm_length_2_squared
-                    + 0.5*abs(
-                        (arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
-                        + (
-                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
+                    + 0.5
+                    * abs(
+                        (arm_length_1 - 0.5 * effective_a2) * (arm_length_1 - 0.5 * effective_a2)
+                        + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
                     )
-                    + 0.5*(arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
-                    + 0.5*(arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
-                    + (
-                        0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
-                    )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
-                    - 0.5*abs(
-                        (arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
-                        + (
-                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
+                    + 0.5 * (arm_length_1 - 0.5 * effective_a2) * (arm_length_1 - 0.5 * effective_a2)
+                    + 0.5 * (arm_length_1 + 0.5 * effective_a2) * (arm_length_1 + 0.5 * effective_a2)
+                    + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
+                    * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
+                    - 0.5
+                    * abs(
+                        (arm_length_1 + 0.5 * effective_a2) * (arm_length_1 + 0.5 * effective_a2)
+                        + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
                     )
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_y = part_of_pivot_2_y + y
-        along_a3 = span_2_x + root_of_3_2*span_3_y
-        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length of the arm that a3 turns
+        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         # cosine, times the scale, without cancellation
-        scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
-        arm_length_1_times_effective_a3 = arm_length_1*effective_a3
+        scaled_cosine_a3 = (part_of_pivot_2_y + span_3_y) * y - part_of_scaled_cosine_a2
+        arm_length_1_times_effective_a3 = arm_length_1 * effective_a3
         # law of cosines for a3: rod 3: 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
         divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
                     arm_length_2_squared
-                    + 0.5*abs(
-                        (arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
-                        + (
-                            0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
-                        )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
+                    + 0.5
+                    * abs(
+                        (arm_length_1 - 0.5 * effective_a3) * (arm_length_1 - 0.5 * effective_a3)
+                        + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
                     )
-                    + 0.5*(arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
-                    + 0.5*(arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
-                    + (
-                        0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
-                    )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
-                    - 0.5*abs(
-                        (arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
-                        + (
-                            0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
-                        )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
+                    + 0.5 * (arm_length_1 - 0.5 * effective_a3) * (arm_length_1 - 0.5 * effective_a3)
+                    + 0.5 * (arm_length_1 + 0.5 * effective_a3) * (arm_length_1 + 0.5 * effective_a3)
+                    + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
+                    * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
+                    - 0.5
+                    * abs(
+                        (arm_length_1 + 0.5 * effective_a3) * (arm_length_1 + 0.5 * effective_a3)
+                        + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
                     )
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
-        rod_1_x = span_1_x + arm_length_1*cos_a1
-        sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
-        rod_1_z = span_1_z + arm_length_1*sin_a1
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        cos_a1 = (span_1_x * cos_swing_a1 - span_1_z * sin_swing_a1) / effective_a1
+        rod_1_x = span_1_x + arm_length_1 * cos_a1
+        sin_a1 = (span_1_z * cos_swing_a1 + span_1_x * sin_swing_a1) / effective_a1
+        rod_1_z = span_1_z + arm_length_1 * sin_a1
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
-        rod_2_x = span_2_x - half_arm_length_1*cos_a2
-        rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half*cos_a2
-        sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/effective_a2
-        rod_2_z = span_1_z + arm_length_1*sin_a2
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
-        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
+        cos_a2 = (across_a2 * sin_swing_a2 + along_a2 * cos_swing_a2) / effective_a2
+        rod_2_x = span_2_x - half_arm_length_1 * cos_a2
+        rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half * cos_a2
+        sin_a2 = (along_a2 * sin_swing_a2 - across_a2 * cos_swing_a2) / effective_a2
+        rod_2_z = span_1_z + arm_length_1 * sin_a2
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
-        rod_3_x = span_2_x - half_arm_length_1*cos_a3
-        rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half*cos_a3
-        sin_a3 = (along_a3*sin_swing_a3 - across_a2*cos_swing_a3)/effective_a3
-        rod_3_z = span_1_z + arm_length_1*sin_a3
-        type2_rods_coplanar = (
-            -part_of_type2_rods_coplanar
-            *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-                + (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
-            )
+        cos_a3 = (across_a2 * sin_swing_a3 + along_a3 * cos_swing_a3) / effective_a3
+        rod_3_x = span_2_x - half_arm_length_1 * cos_a3
+        rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half * cos_a3
+        sin_a3 = (along_a3 * sin_swing_a3 - across_a2 * cos_swing_a3) / effective_a3
+        rod_3_z = span_1_z + arm_length_1 * sin_a3
+        type2_rods_coplanar = -part_of_type2_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+            + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
             )
         # ball joint of rod 1
-        if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
+        if not (abs(y) / arm_length_2 <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(abs(y)/arm_length_2 + 0.0, root(1.0 - y*y/arm_length_2_squared) + 0.0)
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                arctan2(abs(y) / arm_length_2 + 0.0, root(1.0 - y * y / arm_length_2_squared) + 0.0)
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
                 )
-                /DEGREE
-            )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
-        part = root_of_3_times_half_by_arm_length_2*x
-        half_by_arm_length_2_times_y = half_by_arm_length_2*y
+        part = root_of_3_times_half_by_arm_length_2 * x
+        half_by_arm_length_2_times_y = half_by_arm_length_2 * y
         # ball joint of rod 2
         if not (abs(half_by_arm_length_2_times_y + part) <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(
-                        abs(half_by_arm_length_2_times_y + part) + 0.0,
-                        root(1.0 + (-half_by_arm_length_2_times_y - part)*(half_by_arm_length_2_times_y + part)) + 0.0,
-                    )
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                arctan2(
+                    abs(half_by_arm_length_2_times_y + part) + 0.0,
+                    root(1.0 + (-half_by_arm_length_2_times_y - part) * (half_by_arm_length_2_times_y + part)) + 0.0,
                 )
-                /DEGREE
-            )
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
+                )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(half_by_arm_length_2_times_y - part) <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(
-                        abs(half_by_arm_length_2_times_y - part) + 0.0,
-                        root(1.0 + (part - half_by_arm_length_2_times_y)*(half_by_arm_length_2_times_y - part)) + 0.0,
-                    )
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                arctan2(
+                    abs(half_by_arm_length_2_times_y - part) + 0.0,
+                    root(1.0 + (part - half_by_arm_length_2_times_y) * (half_by_arm_length_2_times_y - part)) + 0.0,
                 )
-                /DEGREE
-            )
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
+                )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
-        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: whole turns added
+        near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -894,45 +662,14 @@ class TripodRotary(OffsetKinematics):
         """The test of the limits."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        highest_a1 = k.highest_a1
-        highest_a2 = k.highest_a2
-        highest_a3 = k.highest_a3
-        lowest_a1 = k.lowest_a1
-        lowest_a2 = k.lowest_a2
-        lowest_a3 = k.lowest_a3
-        # limits of A1
-        if not (axis_a1 >= lowest_a1):
-            missing = lowest_a1 - axis_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
-        if not (axis_a1 <= highest_a1):
-            missing = axis_a1 - highest_a1
-            if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
-                return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
-        # limits of A2
-        if not (axis_a2 >= lowest_a2):
-            missing = lowest_a2 - axis_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
-        if not (axis_a2 <= highest_a2):
-            missing = axis_a2 - highest_a2
-            if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
-                return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
-        # limits of A3
-        if not (axis_a3 >= lowest_a3):
-            missing = lowest_a3 - axis_a3
-            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
-                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
-        if not (axis_a3 <= highest_a3):
-            missing = axis_a3 - highest_a3
-            if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
-                return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
+        highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
+        lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
+        if not lowest_a1 <= axis_a1 <= highest_a1:
+            return beyond_turn("A1", axis_a1, lowest_a1, highest_a1)
+        if not lowest_a2 <= axis_a2 <= highest_a2:
+            return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
+        if not lowest_a3 <= axis_a3 <= highest_a3:
+            return beyond_turn("A3", axis_a3, lowest_a3, highest_a3)
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
@@ -941,98 +678,89 @@ class TripodRotary(OffsetKinematics):
         k = self._constants
         arm_length_1 = k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_2 = k.arm_length_2
-        arm_length_2_squared = k.arm_length_2_squared
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
-        fixed_length_2 = k.fixed_length_2
-        half_arm_length_1 = k.half_arm_length_1
-        half_by_arm_length_2 = k.half_by_arm_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_margin_rods_coplanar = k.part_of_margin_rods_coplanar
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
+        arm_length_2, arm_length_2_squared = k.arm_length_2, k.arm_length_2_squared
+        arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
+        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
+        half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
+        offset_a2, offset_a3, part_of_margin_rods_coplanar = k.offset_a2, k.offset_a3, k.part_of_margin_rods_coplanar
+        part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
         part_of_pivot_2_y = k.part_of_pivot_2_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
+        pivot_1_z = fixed_length_2 - arm_length_1 * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
+        pivot_2_z = fixed_length_2 - arm_length_1 * sin_a2
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3
+        pivot_3_z = fixed_length_2 - arm_length_1 * sin_a3
         centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
-                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_2_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
-        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_z = z - fixed_length_2
-        margin_stretched_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
+        margin_stretched_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / arm_length_2
         span_2_x = x - part_of_pivot_2_x  # rod 2: known part of its vector
-        y = foot_y + height_by_normal*normal_y
+        y = foot_y + height_by_normal * normal_y
         span_2_y = y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
-        margin_stretched_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
+        margin_stretched_2 = (
+            (root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2
+        ) * half_by_arm_length_2
         span_3_y = part_of_pivot_2_y + y
-        margin_stretched_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)*half_by_arm_length_2
+        margin_stretched_3 = (
+            -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * half_by_arm_length_2
+        )
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
         rod_2_x = x - pivot_2_x
@@ -1042,167 +770,151 @@ class TripodRotary(OffsetKinematics):
         rod_3_y = y - pivot_3_y
         rod_3_z = z - pivot_3_z
         margin_rods_coplanar = (
-            (
-                rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x)
-                + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*y
-            )
-            /part_of_margin_rods_coplanar
-        )
+            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
+        ) / part_of_margin_rods_coplanar
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, margin_rods_coplanar)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_1_radius = k.arm_1_radius
-        arm_length_1 = k.arm_length_1
+        arm_1_radius, arm_length_1 = k.arm_1_radius, k.arm_length_1
         arm_length_1_times_root_of_3 = k.arm_length_1_times_root_of_3
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
         arm_length_2_squared = k.arm_length_2_squared
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        fixed_length_1 = k.fixed_length_1
-        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
-        fixed_length_2 = k.fixed_length_2
-        half_arm_length_1 = k.half_arm_length_1
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_determinant_divisor = k.part_of_determinant_divisor
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        part_of_slope_1_by_x = k.part_of_slope_1_by_x
+        arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
+        fixed_length_1, fixed_length_1_minus_arm_1_radius = k.fixed_length_1, k.fixed_length_1_minus_arm_1_radius
+        fixed_length_2, half_arm_length_1, offset_a1 = k.fixed_length_2, k.half_arm_length_1, k.offset_a1
+        offset_a2, offset_a3, part_of_determinant_divisor = k.offset_a2, k.offset_a3, k.part_of_determinant_divisor
+        part_of_normal_divisor, part_of_pivot_2_x = k.part_of_normal_divisor, k.part_of_pivot_2_x
+        part_of_pivot_2_y, part_of_slope_1_by_x = k.part_of_pivot_2_y, k.part_of_slope_1_by_x
         twice_arm_length_1 = k.twice_arm_length_1
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        arm_length_1_times_sin_a1 = arm_length_1*sin_a1
+        arm_length_1_times_sin_a1 = arm_length_1 * sin_a1
         pivot_1_z = fixed_length_2 - arm_length_1_times_sin_a1
         sin_a2 = sin(a2)
-        arm_length_1_times_sin_a2 = arm_length_1*sin_a2
+        arm_length_1_times_sin_a2 = arm_length_1 * sin_a2
         pivot_2_z = fixed_length_2 - arm_length_1_times_sin_a2
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        arm_length_1_times_sin_a3 = arm_length_1*sin_a3
+        arm_length_1_times_sin_a3 = arm_length_1 * sin_a3
         pivot_3_z = fixed_length_2 - arm_length_1_times_sin_a3
         centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
-                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_2_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
-        twice_x = 2.0*x
-        slope_1_by_x = twice_x + twice_arm_length_1*cos_a1 - part_of_slope_1_by_x
-        y = foot_y + height_by_normal*normal_y
-        slope_1_by_y = 2.0*y
-        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        twice_x = 2.0 * x
+        slope_1_by_x = twice_x + twice_arm_length_1 * cos_a1 - part_of_slope_1_by_x
+        y = foot_y + height_by_normal * normal_y
+        slope_1_by_y = 2.0 * y
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
         z_minus_fixed_length_2 = z - fixed_length_2
-        twice_z_minus_fixed_length_2 = 2.0*z_minus_fixed_length_2
-        slope_1_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1*sin_a1
-        arm_length_1_times_cos_a2 = arm_length_1*cos_a2
+        twice_z_minus_fixed_length_2 = 2.0 * z_minus_fixed_length_2
+        slope_1_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a1
+        arm_length_1_times_cos_a2 = arm_length_1 * cos_a2
         root_of_3_2 = root(3.0)
-        part_of_slope_2_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a2)*root_of_3_2
+        part_of_slope_2_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a2) * root_of_3_2
         slope_2_by_y = slope_1_by_y - part_of_slope_2_by_y
-        slope_2_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1*sin_a2
-        arm_length_1_times_cos_a3 = arm_length_1*cos_a3
-        part_of_slope_3_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a3)*root_of_3_2
+        slope_2_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a2
+        arm_length_1_times_cos_a3 = arm_length_1 * cos_a3
+        part_of_slope_3_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a3) * root_of_3_2
         slope_3_by_y = part_of_slope_3_by_y + slope_1_by_y
-        slope_3_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1*sin_a3
-        part_of_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y
+        slope_3_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a3
+        part_of_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
         part_of_slope_2_by_x = fixed_length_1_minus_arm_1_radius + twice_x
         slope_2_by_x = part_of_slope_2_by_x - arm_length_1_times_cos_a2
         slope_3_by_x = part_of_slope_2_by_x - arm_length_1_times_cos_a3
-        part_of_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z
-        part_of_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x
+        part_of_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        part_of_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
         # determinant dPhi/dx: zero in a type 2 singularity
         determinant = (
-            part_of_determinant*slope_1_by_x + part_of_determinant_2*slope_1_by_y + part_of_determinant_3*slope_1_by_z
+            part_of_determinant * slope_1_by_x
+            + part_of_determinant_2 * slope_1_by_y
+            + part_of_determinant_3 * slope_1_by_z
         )
         # nothing controls the plate
         if not (abs(determinant) > part_of_determinant_divisor):
             return Status.IMPOSSIBLE
-        slope_1_by_a1 = (
-            twice_arm_length_1*((arm_length_1_times_sin_a1 + z_minus_fixed_length_2)*cos_a1 + (pivot_1_x - x)*sin_a1)
+        slope_1_by_a1 = twice_arm_length_1 * (
+            (arm_length_1_times_sin_a1 + z_minus_fixed_length_2) * cos_a1 + (pivot_1_x - x) * sin_a1
         )
-        one_by_determinant_divisor = 1.0/determinant
-        part = one_by_determinant_divisor*slope_1_by_a1
+        one_by_determinant_divisor = 1.0 / determinant
+        part = one_by_determinant_divisor * slope_1_by_a1
         slope_2_by_a2 = (
-            ((x - pivot_2_x)*arm_length_1 + arm_length_1_times_root_of_3*(0.5*part_of_slope_2_by_y - y))*sin_a2
-            + (arm_length_1_times_sin_a2 + z_minus_fixed_length_2)*twice_arm_length_1*cos_a2
-        )
-        part_2 = one_by_determinant_divisor*slope_2_by_a2
+            (x - pivot_2_x) * arm_length_1 + arm_length_1_times_root_of_3 * (0.5 * part_of_slope_2_by_y - y)
+        ) * sin_a2 + (arm_length_1_times_sin_a2 + z_minus_fixed_length_2) * twice_arm_length_1 * cos_a2
+        part_2 = one_by_determinant_divisor * slope_2_by_a2
         slope_3_by_a3 = (
-            ((x - pivot_3_x)*arm_length_1 + arm_length_1_times_root_of_3*(0.5*part_of_slope_3_by_y + y))*sin_a3
-            + (arm_length_1_times_sin_a3 + z_minus_fixed_length_2)*twice_arm_length_1*cos_a3
-        )
-        part_3 = one_by_determinant_divisor*slope_3_by_a3
+            (x - pivot_3_x) * arm_length_1 + arm_length_1_times_root_of_3 * (0.5 * part_of_slope_3_by_y + y)
+        ) * sin_a3 + (arm_length_1_times_sin_a3 + z_minus_fixed_length_2) * twice_arm_length_1 * cos_a3
+        part_3 = one_by_determinant_divisor * slope_3_by_a3
         return (
             (
-                -part*part_of_determinant,
-                part_2*(slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y),
-                (slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z)*part_3,
+                -part * part_of_determinant,
+                part_2 * (slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y),
+                (slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z) * part_3,
             ),
             (
-                -part*part_of_determinant_2,
-                (slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z)*part_2,
-                part_3*(slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x),
+                -part * part_of_determinant_2,
+                (slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z) * part_2,
+                part_3 * (slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x),
             ),
             (
-                -part*part_of_determinant_3,
-                part_2*(slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x),
-                (slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y)*part_3,
+                -part * part_of_determinant_3,
+                part_2 * (slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x),
+                (slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y) * part_3,
             ),
         )
 
@@ -1211,7 +923,7 @@ class TripodRotary(OffsetKinematics):
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
     def _offset_branch(
-        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals,
+        self, point: Vector, offset: Vector, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch for a point off the flange."""
         x, y, z = point
@@ -1222,76 +934,60 @@ class TripodRotary(OffsetKinematics):
         k = self._constants
         arm_length_1 = k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_1_times_shortest_link = k.arm_length_1_times_shortest_link
-        arm_length_2 = k.arm_length_2
+        arm_length_1_times_shortest_link, arm_length_2 = k.arm_length_1_times_shortest_link, k.arm_length_2
         arm_length_2_squared = k.arm_length_2_squared
-        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
-        fixed_length_2 = k.fixed_length_2
-        half_arm_length_1 = k.half_arm_length_1
-        half_by_arm_length_2 = k.half_by_arm_length_2
-        mid_a1 = k.mid_a1
-        mid_a2 = k.mid_a2
-        mid_a3 = k.mid_a3
-        min_type2_margin = k.min_type2_margin
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_divisor_a2 = k.part_of_divisor_a2
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
+        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
+        half_arm_length_1, half_by_arm_length_2, mid_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.mid_a1
+        mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
+        offset_a2, offset_a3, part_of_divisor_a2 = k.offset_a2, k.offset_a3, k.part_of_divisor_a2
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
         part_of_scaled_cosine_a1 = k.part_of_scaled_cosine_a1
         part_of_type2_rods_coplanar = k.part_of_type2_rods_coplanar
         root_of_3_times_half_by_arm_length_2 = k.root_of_3_times_half_by_arm_length_2
-        sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
-        single_a1 = k.single_a1
-        single_a2 = k.single_a2
-        single_a3 = k.single_a3
-        twice_arm_length_1 = k.twice_arm_length_1
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
-            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
-            and -1e9 <= ref_a3 <= 1e9
-        ):
+        sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
+        single_a3, twice_arm_length_1 = k.single_a3, k.twice_arm_length_1
+        if not are_usable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # position of the flange: the point less its offset
         span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         flange_z = z - point_z  # position of the flange: the point less its offset
         span_1_z = flange_z - fixed_length_2
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length of the arm that a1 turns
+        effective_a1 = sqrt(span_1_x * span_1_x + span_1_z * span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         flange_y = y - point_y  # position of the flange: the point less its offset
-        part_of_scaled_cosine_a1_2 = part_of_scaled_cosine_a1 + (span_1_z - fixed_length_2)*flange_z
+        part_of_scaled_cosine_a1_2 = part_of_scaled_cosine_a1 + (span_1_z - fixed_length_2) * flange_z
         # cosine, times the scale, without cancellation
         scaled_cosine_a1 = (
-            (fixed_length_1_minus_arm_1_radius - span_1_x)*flange_x - part_of_scaled_cosine_a1_2 - flange_y*flange_y
+            (fixed_length_1_minus_arm_1_radius - span_1_x) * flange_x - part_of_scaled_cosine_a1_2 - flange_y * flange_y
         )
-        twice_arm_length_1_times_effective_a1 = effective_a1*twice_arm_length_1
+        twice_arm_length_1_times_effective_a1 = effective_a1 * twice_arm_length_1
         # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = sum_of_cos_a1 if sum_of_cos_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
                     arm_length_2_squared
-                    + 0.5*abs(
-                        (arm_length_1 - effective_a1)*(arm_length_1 - effective_a1)
-                        - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
+                    + 0.5
+                    * abs(
+                        (arm_length_1 - effective_a1) * (arm_length_1 - effective_a1)
+                        - (arm_length_2 + flange_y) * (arm_length_2 - flange_y)
                     )
-                    + 0.5*(arm_length_1 - effective_a1)*(arm_length_1 - effective_a1)
-                    + 0.5*(arm_length_1 + effective_a1)*(arm_length_1 + effective_a1)
-                    + (flange_y - arm_length_2)*(arm_length_2 + flange_y)
-                    - 0.5*abs(
-                        (arm_length_1 + effective_a1)*(arm_length_1 + effective_a1)
-                        - (arm_length_2 + flange_y)*(arm_length_2 - flange_y)
+                    + 0.5 * (arm_length_1 - effective_a1) * (arm_length_1 - effective_a1)
+                    + 0.5 * (arm_length_1 + effective_a1) * (arm_length_1 + effective_a1)
+                    + (flange_y - arm_length_2) * (arm_length_2 + flange_y)
+                    - 0.5
+                    * abs(
+                        (arm_length_1 + effective_a1) * (arm_length_1 + effective_a1)
+                        - (arm_length_2 + flange_y) * (arm_length_2 - flange_y)
                     )
                 )
             )
@@ -1299,204 +995,188 @@ class TripodRotary(OffsetKinematics):
         span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = flange_y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2*span_2_y
-        across_a2 = 2.0*span_1_z
-        across_a2_squared = across_a2*across_a2
-        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length of the arm that a2 turns
+        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        across_a2 = 2.0 * span_1_z
+        across_a2_squared = across_a2 * across_a2
+        effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        part_of_scaled_cosine_a2 = flange_x*(part_of_pivot_2_x - span_2_x) - part_of_scaled_cosine_a1_2
+        part_of_scaled_cosine_a2 = flange_x * (part_of_pivot_2_x - span_2_x) - part_of_scaled_cosine_a1_2
         # cosine, times the scale, without cancellation
-        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y)*flange_y - part_of_scaled_cosine_a2
-        arm_length_1_times_effective_a2 = arm_length_1*effective_a2
+        scaled_cosine_a2 = (span_2_y - part_of_pivot_2_y) * flange_y - part_of_scaled_cosine_a2
+        arm_length_1_times_effective_a2 = arm_length_1 * effective_a2
         # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = sum_of_cos_a2 if sum_of_cos_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
                     arm_length_2_squared
-                    + 0.5*abs(
-                        (arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
-                        + (
-                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
+                    + 0.5
+                    * abs(
+                        (arm_length_1 - 0.5 * effective_a2) * (arm_length_1 - 0.5 * effective_a2)
+                        + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
                     )
-                    + 0.5*(arm_length_1 - 0.5*effective_a2)*(arm_length_1 - 0.5*effective_a2)
-                    + 0.5*(arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
-                    + (
-                        0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
-                    )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
-                    - 0.5*abs(
-                        (arm_length_1 + 0.5*effective_a2)*(arm_length_1 + 0.5*effective_a2)
-                        + (
-                            0.5*(span_2_y + root_of_3_2*span_2_x) - arm_length_2
-                        )*(arm_length_2 + 0.5*(span_2_y + root_of_3_2*span_2_x))
+                    + 0.5 * (arm_length_1 - 0.5 * effective_a2) * (arm_length_1 - 0.5 * effective_a2)
+                    + 0.5 * (arm_length_1 + 0.5 * effective_a2) * (arm_length_1 + 0.5 * effective_a2)
+                    + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
+                    * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
+                    - 0.5
+                    * abs(
+                        (arm_length_1 + 0.5 * effective_a2) * (arm_length_1 + 0.5 * effective_a2)
+                        + (0.5 * (span_2_y + root_of_3_2 * span_2_x) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (span_2_y + root_of_3_2 * span_2_x))
                     )
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         span_3_y = flange_y + part_of_pivot_2_y
-        along_a3 = span_2_x + root_of_3_2*span_3_y
-        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length of the arm that a3 turns
+        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # a3: its effective length is too short
         if not (effective_a3 > part_of_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         # cosine, times the scale, without cancellation
-        scaled_cosine_a3 = flange_y*(part_of_pivot_2_y + span_3_y) - part_of_scaled_cosine_a2
-        arm_length_1_times_effective_a3 = arm_length_1*effective_a3
+        scaled_cosine_a3 = flange_y * (part_of_pivot_2_y + span_3_y) - part_of_scaled_cosine_a2
+        arm_length_1_times_effective_a3 = arm_length_1 * effective_a3
         # law of cosines for a3: rod 3: 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
         divisor_of_cos_a3 = sum_of_cos_a3 if sum_of_cos_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = abs(
                 arm_length_2
                 - root(
                     arm_length_2_squared
-                    + 0.5*abs(
-                        (arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
-                        + (
-                            0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
-                        )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
+                    + 0.5
+                    * abs(
+                        (arm_length_1 - 0.5 * effective_a3) * (arm_length_1 - 0.5 * effective_a3)
+                        + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
                     )
-                    + 0.5*(arm_length_1 - 0.5*effective_a3)*(arm_length_1 - 0.5*effective_a3)
-                    + 0.5*(arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
-                    + (
-                        0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
-                    )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
-                    - 0.5*abs(
-                        (arm_length_1 + 0.5*effective_a3)*(arm_length_1 + 0.5*effective_a3)
-                        + (
-                            0.5*(root_of_3_2*span_2_x - span_3_y) - arm_length_2
-                        )*(arm_length_2 + 0.5*(root_of_3_2*span_2_x - span_3_y))
+                    + 0.5 * (arm_length_1 - 0.5 * effective_a3) * (arm_length_1 - 0.5 * effective_a3)
+                    + 0.5 * (arm_length_1 + 0.5 * effective_a3) * (arm_length_1 + 0.5 * effective_a3)
+                    + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
+                    * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
+                    - 0.5
+                    * abs(
+                        (arm_length_1 + 0.5 * effective_a3) * (arm_length_1 + 0.5 * effective_a3)
+                        + (0.5 * (root_of_3_2 * span_2_x - span_3_y) - arm_length_2)
+                        * (arm_length_2 + 0.5 * (root_of_3_2 * span_2_x - span_3_y))
                     )
                 )
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/effective_a1
-        rod_1_x = span_1_x + arm_length_1*cos_a1
-        sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/effective_a1
-        rod_1_z = span_1_z + arm_length_1*sin_a1
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        cos_a1 = (span_1_x * cos_swing_a1 - span_1_z * sin_swing_a1) / effective_a1
+        rod_1_x = span_1_x + arm_length_1 * cos_a1
+        sin_a1 = (span_1_z * cos_swing_a1 + span_1_x * sin_swing_a1) / effective_a1
+        rod_1_z = span_1_z + arm_length_1 * sin_a1
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_knee_2 / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/effective_a2
-        rod_2_x = span_2_x - half_arm_length_1*cos_a2
-        rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half*cos_a2
-        sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/effective_a2
-        rod_2_z = span_1_z + arm_length_1*sin_a2
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
-        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
+        cos_a2 = (across_a2 * sin_swing_a2 + along_a2 * cos_swing_a2) / effective_a2
+        rod_2_x = span_2_x - half_arm_length_1 * cos_a2
+        rod_2_y = span_2_y + arm_length_1_times_root_of_3_times_half * cos_a2
+        sin_a2 = (along_a2 * sin_swing_a2 - across_a2 * cos_swing_a2) / effective_a2
+        rod_2_z = span_1_z + arm_length_1 * sin_a2
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = -2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_knee_3 / divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/effective_a3
-        rod_3_x = span_2_x - half_arm_length_1*cos_a3
-        rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half*cos_a3
-        sin_a3 = (along_a3*sin_swing_a3 - across_a2*cos_swing_a3)/effective_a3
-        rod_3_z = span_1_z + arm_length_1*sin_a3
+        cos_a3 = (across_a2 * sin_swing_a3 + along_a3 * cos_swing_a3) / effective_a3
+        rod_3_x = span_2_x - half_arm_length_1 * cos_a3
+        rod_3_y = span_3_y - arm_length_1_times_root_of_3_times_half * cos_a3
+        sin_a3 = (along_a3 * sin_swing_a3 - across_a2 * cos_swing_a3) / effective_a3
+        rod_3_z = span_1_z + arm_length_1 * sin_a3
         type2_rods_coplanar = (
             -(
-                flange_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x) + (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x
-                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
+                flange_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
+                + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+                + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
             )
-            *part_of_type2_rods_coplanar
+            * part_of_type2_rods_coplanar
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             missing = min_type2_margin - type2_rods_coplanar
             return Diagnosis(
-                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing,
+                Status.UNREACHABLE, "rods_coplanar: the other assembly mode, or too near to losing the plate", missing
             )
         # ball joint of rod 1
-        if not (abs(flange_y)/arm_length_2 <= sin_max_angle_ball_joint):
+        if not (abs(flange_y) / arm_length_2 <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(abs(flange_y)/arm_length_2 + 0.0, root(1.0 - flange_y*flange_y/arm_length_2_squared) + 0.0)
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                arctan2(
+                    abs(flange_y) / arm_length_2 + 0.0, root(1.0 - flange_y * flange_y / arm_length_2_squared) + 0.0
                 )
-                /DEGREE
-            )
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
+                )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 1: beyond its largest angle [deg]", missing)
-        part = flange_x*root_of_3_times_half_by_arm_length_2
-        half_by_arm_length_2_times_flange_y = flange_y*half_by_arm_length_2
+        part = flange_x * root_of_3_times_half_by_arm_length_2
+        half_by_arm_length_2_times_flange_y = flange_y * half_by_arm_length_2
         # ball joint of rod 2
         if not (abs(half_by_arm_length_2_times_flange_y + part) <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(
-                        abs(half_by_arm_length_2_times_flange_y + part) + 0.0,
-                        (
-                            root(
-                                1.0
-                                + (
-                                    -half_by_arm_length_2_times_flange_y - part
-                                )*(half_by_arm_length_2_times_flange_y + part)
-                            )
-                            + 0.0
-                        ),
+                arctan2(
+                    abs(half_by_arm_length_2_times_flange_y + part) + 0.0,
+                    root(
+                        1.0
+                        + (-half_by_arm_length_2_times_flange_y - part) * (half_by_arm_length_2_times_flange_y + part)
                     )
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                    + 0.0,
                 )
-                /DEGREE
-            )
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
+                )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 2: beyond its largest angle [deg]", missing)
         # ball joint of rod 3
         if not (abs(half_by_arm_length_2_times_flange_y - part) <= sin_max_angle_ball_joint):
             missing = (
-                (
-                    arctan2(
-                        abs(half_by_arm_length_2_times_flange_y - part) + 0.0,
-                        (
-                            root(
-                                1.0
-                                + (
-                                    part - half_by_arm_length_2_times_flange_y
-                                )*(half_by_arm_length_2_times_flange_y - part)
-                            )
-                            + 0.0
-                        ),
+                arctan2(
+                    abs(half_by_arm_length_2_times_flange_y - part) + 0.0,
+                    root(
+                        1.0
+                        + (part - half_by_arm_length_2_times_flange_y) * (half_by_arm_length_2_times_flange_y - part)
                     )
-                    - arctan2(
-                        sin_max_angle_ball_joint + 0.0,
-                        root(1.0 - sin_max_angle_ball_joint*sin_max_angle_ball_joint) + 0.0,
-                    )
+                    + 0.0,
                 )
-                /DEGREE
-            )
+                - arctan2(
+                    sin_max_angle_ball_joint + 0.0,
+                    root(1.0 - sin_max_angle_ball_joint * sin_max_angle_ball_joint) + 0.0,
+                )
+            ) / DEGREE
             return Diagnosis(Status.UNREACHABLE, "ball joint of rod 3: beyond its largest angle [deg]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
-        near_a1 = 360.0*(turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: whole turns added
+        near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) / DEGREE  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 else ref_a2  # A2: without a commanded turn, the value nearest to this
-        near_a2 = 360.0*(turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: whole turns added
+        near_a2 = 360.0 * (turn_a2 - 1 if turn_a2 > 0 else turn_a2) if turn_a2 != 0 else open_a2
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0) / DEGREE  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
-        near_a3 = 360.0*(turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: whole turns added
+        near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0) / DEGREE  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
@@ -1507,97 +1187,84 @@ class TripodRotary(OffsetKinematics):
         k = self._constants
         arm_length_1 = k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
-        arm_length_2 = k.arm_length_2
-        arm_length_2_squared = k.arm_length_2_squared
-        arm_length_2_squared_times_rounding = k.arm_length_2_squared_times_rounding
-        assembly_sign = k.assembly_sign
-        fixed_length_1_minus_arm_1_radius = k.fixed_length_1_minus_arm_1_radius
-        fixed_length_2 = k.fixed_length_2
-        half_arm_length_1 = k.half_arm_length_1
-        half_by_arm_length_2 = k.half_by_arm_length_2
-        offset_a1 = k.offset_a1
-        offset_a2 = k.offset_a2
-        offset_a3 = k.offset_a3
-        part_of_normal_divisor = k.part_of_normal_divisor
-        part_of_pivot_2_x = k.part_of_pivot_2_x
-        part_of_pivot_2_y = k.part_of_pivot_2_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
+        arm_length_2, arm_length_2_squared = k.arm_length_2, k.arm_length_2_squared
+        arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
+        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
+        half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
+        offset_a2, offset_a3, part_of_normal_divisor = k.offset_a2, k.offset_a3, k.part_of_normal_divisor
+        part_of_pivot_2_x, part_of_pivot_2_y = k.part_of_pivot_2_x, k.part_of_pivot_2_y
+        if not are_usable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
-        a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half*cos_a2
-        a3 = DEGREE*(axis_a3 - offset_a3)
+        pivot_2_y = part_of_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
+        a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = arm_length_1_times_root_of_3_times_half*cos_a3 - part_of_pivot_2_y
-        a1 = DEGREE*(axis_a1 - offset_a1)
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - part_of_pivot_2_y
+        a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
+        pivot_1_z = fixed_length_2 - arm_length_1 * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
+        pivot_2_z = fixed_length_2 - arm_length_1 * sin_a2
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3
+        pivot_3_z = fixed_length_2 - arm_length_1 * sin_a3
         centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1*cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = part_of_pivot_2_x + half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
+        pivot_2_x = part_of_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = part_of_pivot_2_x + half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = part_of_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > part_of_normal_divisor):
             return Status.IMPOSSIBLE
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
-        one_by_normal_square = 1.0/normal_square
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
-                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = arm_length_2_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # the rods do not meet
         if not (height_square >= -arm_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*assembly_sign
-        flange_x = foot_x + pivot_1_x + height_by_normal*normal_x
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        flange_x = foot_x + pivot_1_x + height_by_normal * normal_x
         span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
-        flange_z = foot_z + pivot_1_z + height_by_normal*normal_z
+        flange_z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_z = flange_z - fixed_length_2
-        branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
+        branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / arm_length_2
         span_2_x = flange_x - part_of_pivot_2_x  # rod 2: known part of its vector
-        flange_y = foot_y + height_by_normal*normal_y
+        flange_y = foot_y + height_by_normal * normal_y
         span_2_y = flange_y - part_of_pivot_2_y
         root_of_3_2 = root(3.0)
-        branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*half_by_arm_length_2
+        branch_knee_2 = ((root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2) * half_by_arm_length_2
         span_3_y = flange_y + part_of_pivot_2_y
-        branch_knee_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)*half_by_arm_length_2
+        branch_knee_3 = -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * half_by_arm_length_2
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -1611,8 +1278,7 @@ class TripodRotary(OffsetKinematics):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

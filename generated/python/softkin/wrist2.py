@@ -31,62 +31,46 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond_turn
 from softkin._orientation import OrientationKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.wrist2 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    tool_length: float
-    roll_axis_offset_x: float
-    roll_axis_offset_y: float
-    roll_axis_offset_z: float
-    tool_side: float
-    offset_a: float
-    offset_b: float
-    check_limits: bool
-    lower_a: float
-    upper_a: float
-    unlimited_a: bool
-    lowest_a: float
-    highest_a: float
-    single_a: bool
-    mid_a: float
-    lower_b: float
-    upper_b: float
-    unlimited_b: bool
-    lowest_b: float
-    highest_b: float
-    single_b: bool
-    mid_b: float
-    machine_scale: float
-    unnoticed_shift: float
-    wrist_offset: float
-    unmet_offset: float
-    tool_length_times_tool_side: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        tool_length, roll_axis_offset_x = p["tool_length"], p["roll_axis_offset_x"]
+        roll_axis_offset_y, roll_axis_offset_z = p["roll_axis_offset_y"], p["roll_axis_offset_z"]
+        tool_side, offset_a, offset_b = p["tool_side"], p["offset_a"], p["offset_b"]
+        self.lowest_a, self.highest_a, self.single_a, self.mid_a = machine._window("a")
+        self.lowest_b, self.highest_b, self.single_b, self.mid_b = machine._window("b")
+        # offsets up to this are not noticed
+        unnoticed_shift = (
+            1e-9 * abs(roll_axis_offset_x)
+            + 1e-9 * abs(roll_axis_offset_y)
+            + 1e-9 * abs(roll_axis_offset_z)
+            + 1e-9 * abs(tool_length)
+        )
+        # offset between the axes of the wrist: allowed where the flange keeps its orientation
+        wrist_offset = abs(roll_axis_offset_x)
+        unmet_offset = abs(roll_axis_offset_y)  # part of the tool in directions that are not commanded
+        tool_length_times_tool_side = tool_side * tool_length
+        self.roll_axis_offset_x, self.roll_axis_offset_y = roll_axis_offset_x, roll_axis_offset_y
+        self.roll_axis_offset_z, self.tool_side, self.offset_a = roll_axis_offset_z, tool_side, offset_a
+        self.offset_b, self.unnoticed_shift, self.wrist_offset = offset_b, unnoticed_shift, wrist_offset
+        self.unmet_offset, self.tool_length_times_tool_side = unmet_offset, tool_length_times_tool_side
 
 
 class Wrist2(OrientationKinematics):
@@ -95,66 +79,34 @@ class Wrist2(OrientationKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist2"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Yaw about Z", multi_turn=True),
         Axis(
-            name="B", kind="rotary", unit="deg", meaning="Roll about the turned Y, which moves the tool to +X",
+            name="B",
+            kind="rotary",
+            unit="deg",
+            meaning="Roll about the turned Y, which moves the tool to +X",
             multi_turn=True,
         ),
     )
     PARAMETERS = (
-        Parameter(
-            name="tool_length", kind="distance", unit="u", meaning="Axis B to the tool's tip, along the tool",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+        Parameter.of("distance", "tool_length", "Axis B to the tool's tip, along the tool"),
+        Parameter.of("distance", "roll_axis_offset_x", "Axis A to axis B, along the turned X"),
+        Parameter.of("distance", "roll_axis_offset_y", "Axis A to axis B, along the turned Y"),
+        Parameter.of("distance", "roll_axis_offset_z", "Flange to axis B, along Z"),
+        Parameter.of(
+            "sign", "tool_side", "+1: the tool points along +Z (library 4.16 and later), -1: along -Z (library 4.12)"
         ),
-        Parameter(
-            name="roll_axis_offset_x", kind="distance", unit="u", meaning="Axis A to axis B, along the turned X",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="roll_axis_offset_y", kind="distance", unit="u", meaning="Axis A to axis B, along the turned Y",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="roll_axis_offset_z", kind="distance", unit="u", meaning="Flange to axis B, along Z",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tool_side", kind="sign", unit="",
-            meaning="+1: the tool points along +Z (library 4.16 and later), -1: along -Z (library 4.12)",
-            low=-1.0, high=1.0, low_is_open=False, default=1.0,
-        ),
-        Parameter(
-            name="offset_a", kind="angle", unit="deg", meaning="A: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_b", kind="angle", unit="deg", meaning="B: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a", kind="angle", unit="deg", meaning="A: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a", kind="angle", unit="deg", meaning="A: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_b", kind="angle", unit="deg", meaning="B: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_b", kind="angle", unit="deg", meaning="B: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("angle", "offset_a", "A: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_b", "B: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_a", "A: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a", "A: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_b", "B: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_b", "B: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="roll", kind="branch", branches=("positive", "negative"), default=1),
@@ -172,9 +124,19 @@ class Wrist2(OrientationKinematics):
     DISTANCE_AXES = (0, 1)
 
     def __init__(
-        self, *, tool_length: float = 0.0, roll_axis_offset_x: float = 0.0, roll_axis_offset_y: float = 0.0,
-        roll_axis_offset_z: float = 0.0, tool_side: int = 1, offset_a: float = 0.0, offset_b: float = 0.0,
-        lower_a: float = 0.0, upper_a: float = 0.0, lower_b: float = 0.0, upper_b: float = 0.0,
+        self,
+        *,
+        tool_length: float = 0.0,
+        roll_axis_offset_x: float = 0.0,
+        roll_axis_offset_y: float = 0.0,
+        roll_axis_offset_z: float = 0.0,
+        tool_side: int = 1,
+        offset_a: float = 0.0,
+        offset_b: float = 0.0,
+        lower_a: float = 0.0,
+        upper_a: float = 0.0,
+        lower_b: float = 0.0,
+        upper_b: float = 0.0,
         check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
@@ -192,126 +154,36 @@ class Wrist2(OrientationKinematics):
         upper_b: B: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            tool_length, roll_axis_offset_x, roll_axis_offset_y, roll_axis_offset_z, tool_side, offset_a, offset_b,
-            lower_a, upper_a, lower_b, upper_b, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(lowest_a=-1e12, lowest_b=-1e12, highest_a=1e12, highest_b=1e12)
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, tool_length: float, roll_axis_offset_x: float, roll_axis_offset_y: float, roll_axis_offset_z: float,
-        tool_side: int, offset_a: float, offset_b: float, lower_a: float, upper_a: float, lower_b: float,
-        upper_b: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (tool_length >= -1e9 and tool_length <= 1e9):
-            raise self._refusal("tool_length: Axis B to the tool's tip, along the tool", tool_length=tool_length)
-        if not (roll_axis_offset_x >= -1e9 and roll_axis_offset_x <= 1e9):
-            raise self._refusal(
-                "roll_axis_offset_x: Axis A to axis B, along the turned X", roll_axis_offset_x=roll_axis_offset_x,
-            )
-        if not (roll_axis_offset_y >= -1e9 and roll_axis_offset_y <= 1e9):
-            raise self._refusal(
-                "roll_axis_offset_y: Axis A to axis B, along the turned Y", roll_axis_offset_y=roll_axis_offset_y,
-            )
-        if not (roll_axis_offset_z >= -1e9 and roll_axis_offset_z <= 1e9):
-            raise self._refusal(
-                "roll_axis_offset_z: Flange to axis B, along Z", roll_axis_offset_z=roll_axis_offset_z,
-            )
-        if not ((tool_side == -1) or (tool_side == 1)):
-            raise self._refusal(
-                "tool_side: +1: the tool points along +Z (library 4.16 and later), -1: along -Z (library 4.12)",
-                tool_side=tool_side,
-            )
-        if not (offset_a >= -1e9 and offset_a <= 1e9):
-            raise self._refusal("offset_a: A: axis value at the kinematic zero position", offset_a=offset_a)
-        if not (offset_b >= -1e9 and offset_b <= 1e9):
-            raise self._refusal("offset_b: B: axis value at the kinematic zero position", offset_b=offset_b)
-        if not (lower_a >= -1e9 and lower_a <= 1e9):
-            raise self._refusal("lower_a: A: lower limit of the axis, both 0: no limit", lower_a=lower_a)
-        if not (upper_a >= -1e9 and upper_a <= 1e9):
-            raise self._refusal("upper_a: A: upper limit of the axis, both 0: no limit", upper_a=upper_a)
-        if not (lower_b >= -1e9 and lower_b <= 1e9):
-            raise self._refusal("lower_b: B: lower limit of the axis, both 0: no limit", lower_b=lower_b)
-        if not (upper_b >= -1e9 and upper_b <= 1e9):
-            raise self._refusal("upper_b: B: upper limit of the axis, both 0: no limit", upper_b=upper_b)
-        if not ((lower_a < upper_a) or (abs(lower_a) + abs(upper_a) <= 0.0)):
-            raise self._refusal("lower_a below upper_a, or both 0", lower_a=lower_a, upper_a=upper_a)
-        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: whether it has no limits
-        effective_lower_a = lower_a
-        effective_upper_a = upper_a
-        tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
-        lowest_a = -1e12 if unlimited_a else effective_lower_a - tolerance_a
-        highest_a = 1e12 if unlimited_a else effective_upper_a + tolerance_a
-        # at most one turn is inside the limits
-        single_a = (not unlimited_a) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
-        mid_a = 0.5*effective_lower_a + 0.5*effective_upper_a
-        if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
-            raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
-        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: whether it has no limits
-        effective_lower_b = lower_b
-        effective_upper_b = upper_b
-        tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
-        lowest_b = -1e12 if unlimited_b else effective_lower_b - tolerance_b
-        highest_b = 1e12 if unlimited_b else effective_upper_b + tolerance_b
-        # at most one turn is inside the limits
-        single_b = (not unlimited_b) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
-        mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
-        machine_scale = 1.0  # characteristic length of the machine
-        # offsets up to this are not noticed
-        unnoticed_shift = (
-            1e-9*abs(roll_axis_offset_x) + 1e-9*abs(roll_axis_offset_y) + 1e-9*abs(roll_axis_offset_z)
-            + 1e-9*abs(tool_length)
-        )
-        # offset between the axes of the wrist: allowed where the flange keeps its orientation
-        wrist_offset = abs(roll_axis_offset_x)
-        unmet_offset = abs(roll_axis_offset_y)  # part of the tool in directions that are not commanded
-        tool_length_times_tool_side = tool_side*tool_length
-        return Constants(
-            tool_length=tool_length, roll_axis_offset_x=roll_axis_offset_x, roll_axis_offset_y=roll_axis_offset_y,
-            roll_axis_offset_z=roll_axis_offset_z, tool_side=tool_side, offset_a=offset_a, offset_b=offset_b,
-            check_limits=check_limits, lower_a=effective_lower_a, upper_a=effective_upper_a, unlimited_a=unlimited_a,
-            lowest_a=lowest_a, highest_a=highest_a, single_a=single_a, mid_a=mid_a, lower_b=effective_lower_b,
-            upper_b=effective_upper_b, unlimited_b=unlimited_b, lowest_b=lowest_b, highest_b=highest_b,
-            single_b=single_b, mid_b=mid_b, machine_scale=machine_scale, unnoticed_shift=unnoticed_shift,
-            wrist_offset=wrist_offset, unmet_offset=unmet_offset,
-            tool_length_times_tool_side=tool_length_times_tool_side,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a, axis_b = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        roll_axis_offset_x = k.roll_axis_offset_x
-        roll_axis_offset_y = k.roll_axis_offset_y
-        roll_axis_offset_z = k.roll_axis_offset_z
-        tool_length_times_tool_side = k.tool_length_times_tool_side
-        tool_side = k.tool_side
+        offset_a, offset_b, roll_axis_offset_x = k.offset_a, k.offset_b, k.roll_axis_offset_x
+        roll_axis_offset_y, roll_axis_offset_z = k.roll_axis_offset_y, k.roll_axis_offset_z
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
-        r31_at_b = -tool_side*sin_b
-        r13_at_b = -r31_at_b*cos_a
-        x_at_b = roll_axis_offset_x*cos_a - roll_axis_offset_y*sin_a
-        x = x_at_b + r13_at_b*tool_length_times_tool_side
-        r23_at_b = -r31_at_b*sin_a
-        y_at_b = roll_axis_offset_y*cos_a + roll_axis_offset_x*sin_a
-        y = y_at_b + r23_at_b*tool_length_times_tool_side
+        r31_at_b = -tool_side * sin_b
+        r13_at_b = -r31_at_b * cos_a
+        x_at_b = roll_axis_offset_x * cos_a - roll_axis_offset_y * sin_a
+        x = x_at_b + r13_at_b * tool_length_times_tool_side
+        r23_at_b = -r31_at_b * sin_a
+        y_at_b = roll_axis_offset_y * cos_a + roll_axis_offset_x * sin_a
+        y = y_at_b + r23_at_b * tool_length_times_tool_side
         cos_b = cos(b)
-        z = roll_axis_offset_z + tool_length_times_tool_side*cos_b
-        r11_at_b = cos_a*cos_b
-        r21_at_b = cos_b*sin_a
+        z = roll_axis_offset_z + tool_length_times_tool_side * cos_b
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
         return (
             (x, y, z),
             ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)),
@@ -322,27 +194,25 @@ class Wrist2(OrientationKinematics):
         """The rotation of the frame."""
         axis_a, axis_b = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        tool_side = k.tool_side
+        offset_a, offset_b, tool_side = k.offset_a, k.offset_b, k.tool_side
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         cos_a = cos(a)
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         cos_b = cos(b)
-        r11_at_b = cos_a*cos_b
+        r11_at_b = cos_a * cos_b
         sin_a = sin(a)
         sin_b = sin(b)
-        r31_at_b = -tool_side*sin_b
-        r13_at_b = -r31_at_b*cos_a
-        r21_at_b = cos_b*sin_a
-        r23_at_b = -r31_at_b*sin_a
+        r31_at_b = -tool_side * sin_b
+        r13_at_b = -r31_at_b * cos_a
+        r21_at_b = cos_b * sin_a
+        r23_at_b = -r31_at_b * sin_a
         return ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
@@ -350,36 +220,31 @@ class Wrist2(OrientationKinematics):
         turn_a, turn_b = turns
         ref_a, ref_b = reference
         k = self._constants
-        mid_a = k.mid_a
-        mid_b = k.mid_b
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        single_a = k.single_a
-        single_b = k.single_b
-        tool_side = k.tool_side
+        mid_a, mid_b, offset_a, offset_b, single_a = k.mid_a, k.mid_b, k.offset_a, k.offset_b, k.single_a
+        single_b, tool_side = k.single_b, k.tool_side
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        r13_of_a = r13/tool_side
-        r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
+        r13_of_a = r13 / tool_side
+        r23_of_a = r23 / tool_side
+        radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         if radius_a > 1e-11:
-            direction_x_a = sigma_roll*r13_of_a
-            direction_y_a = sigma_roll*r23_of_a
+            direction_x_a = sigma_roll * r13_of_a
+            direction_y_a = sigma_roll * r23_of_a
         else:
-            free_a = (ref_a - offset_a)*DEGREE
+            free_a = (ref_a - offset_a) * DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
         open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
-        near_a = 360.0*(turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
-        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0)/DEGREE  # A: whole turns added
+        near_a = 360.0 * (turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
+        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0) / DEGREE  # A: whole turns added
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
-        a_radius_of_b = sigma_roll*radius_a
+        a_radius_of_b = sigma_roll * radius_a
         open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
-        near_b = 360.0*(turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
-        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0)/DEGREE  # B: whole turns added
+        near_b = 360.0 * (turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
+        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0) / DEGREE  # B: whole turns added
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
         return (axis_a, axis_b)
@@ -388,32 +253,11 @@ class Wrist2(OrientationKinematics):
         """The test of the limits."""
         axis_a, axis_b = axes
         k = self._constants
-        highest_a = k.highest_a
-        highest_b = k.highest_b
-        lowest_a = k.lowest_a
-        lowest_b = k.lowest_b
-        # limits of A
-        if not (axis_a >= lowest_a):
-            missing = lowest_a - axis_a
-            if turn := turn_inside(axis_a, lowest_a, highest_a):
-                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A: below its lower limit [deg]", missing)
-        if not (axis_a <= highest_a):
-            missing = axis_a - highest_a
-            if turn := turn_inside(axis_a, lowest_a, highest_a):
-                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A: above its upper limit [deg]", missing)
-        # limits of B
-        if not (axis_b >= lowest_b):
-            missing = lowest_b - axis_b
-            if turn := turn_inside(axis_b, lowest_b, highest_b):
-                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "B: below its lower limit [deg]", missing)
-        if not (axis_b <= highest_b):
-            missing = axis_b - highest_b
-            if turn := turn_inside(axis_b, lowest_b, highest_b):
-                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "B: above its upper limit [deg]", missing)
+        highest_a, highest_b, lowest_a, lowest_b = k.highest_a, k.highest_b, k.lowest_a, k.lowest_b
+        if not lowest_a <= axis_a <= highest_a:
+            return beyond_turn("A", axis_a, lowest_a, highest_a)
+        if not lowest_b <= axis_b <= highest_b:
+            return beyond_turn("B", axis_b, lowest_b, highest_b)
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
@@ -424,7 +268,7 @@ class Wrist2(OrientationKinematics):
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
         return (sin_b,)
 
@@ -432,22 +276,23 @@ class Wrist2(OrientationKinematics):
         """The Jacobian by rows, per radian."""
         axis_a, axis_b = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        tool_side = k.tool_side
+        offset_a, offset_b, tool_side = k.offset_a, k.offset_b, k.tool_side
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
-        r31_at_b = -tool_side*sin_b
-        a = DEGREE*(axis_a - offset_a)
+        r31_at_b = -tool_side * sin_b
+        a = DEGREE * (axis_a - offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
         cos_b = cos(b)
-        r11_at_b = cos_a*cos_b
-        r21_at_b = cos_b*sin_a
-        return ((r31_at_b, tool_side*(r21_at_b*cos_a - r11_at_b*sin_a)), (0.0, tool_side*(cos_a*cos_a + sin_a*sin_a)))
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
+        return (
+            (r31_at_b, tool_side * (r21_at_b * cos_a - r11_at_b * sin_a)),
+            (0.0, tool_side * (cos_a * cos_a + sin_a * sin_a)),
+        )
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
@@ -457,36 +302,32 @@ class Wrist2(OrientationKinematics):
         """The twist of the frame by rows, per radian."""
         axis_a, axis_b = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        roll_axis_offset_x = k.roll_axis_offset_x
-        roll_axis_offset_y = k.roll_axis_offset_y
-        roll_axis_offset_z = k.roll_axis_offset_z
-        tool_length_times_tool_side = k.tool_length_times_tool_side
-        tool_side = k.tool_side
+        offset_a, offset_b, roll_axis_offset_x = k.offset_a, k.offset_b, k.roll_axis_offset_x
+        roll_axis_offset_y, roll_axis_offset_z = k.roll_axis_offset_y, k.roll_axis_offset_z
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
-        y_at_b = roll_axis_offset_y*cos_a + roll_axis_offset_x*sin_a
-        sin_a_times_tool_side = tool_side*sin_a
-        b = DEGREE*(axis_b - offset_b)
+        y_at_b = roll_axis_offset_y * cos_a + roll_axis_offset_x * sin_a
+        sin_a_times_tool_side = tool_side * sin_a
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
-        r23_at_b = sin_a_times_tool_side*sin_b
-        y = y_at_b + r23_at_b*tool_length_times_tool_side
-        x_at_b = roll_axis_offset_x*cos_a - roll_axis_offset_y*sin_a
-        cos_a_times_tool_side = tool_side*cos_a
-        r13_at_b = cos_a_times_tool_side*sin_b
-        x = x_at_b + r13_at_b*tool_length_times_tool_side
+        r23_at_b = sin_a_times_tool_side * sin_b
+        y = y_at_b + r23_at_b * tool_length_times_tool_side
+        x_at_b = roll_axis_offset_x * cos_a - roll_axis_offset_y * sin_a
+        cos_a_times_tool_side = tool_side * cos_a
+        r13_at_b = cos_a_times_tool_side * sin_b
+        x = x_at_b + r13_at_b * tool_length_times_tool_side
         cos_b = cos(b)
-        z = roll_axis_offset_z + tool_length_times_tool_side*cos_b
+        z = roll_axis_offset_z + tool_length_times_tool_side * cos_b
         z_minus_roll_axis_offset_z = z - roll_axis_offset_z
         return (
-            (-y, z_minus_roll_axis_offset_z*cos_a_times_tool_side),
-            (x, z_minus_roll_axis_offset_z*sin_a_times_tool_side),
-            (0.0, tool_side*((x_at_b - x)*cos_a + (y_at_b - y)*sin_a)),
+            (-y, z_minus_roll_axis_offset_z * cos_a_times_tool_side),
+            (x, z_minus_roll_axis_offset_z * sin_a_times_tool_side),
+            (0.0, tool_side * ((x_at_b - x) * cos_a + (y_at_b - y) * sin_a)),
             (0.0, -sin_a_times_tool_side),
             (0.0, cos_a_times_tool_side),
             (1.0, 0.0),
@@ -496,20 +337,17 @@ class Wrist2(OrientationKinematics):
         """Whether a flange that turns can carry this."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         k = self._constants
-        roll_axis_offset_z = k.roll_axis_offset_z
-        unmet_offset = k.unmet_offset
-        unnoticed_shift = k.unnoticed_shift
+        roll_axis_offset_z, unmet_offset, unnoticed_shift = k.roll_axis_offset_z, k.unmet_offset, k.unnoticed_shift
         wrist_offset = k.wrist_offset
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
+        if not are_usable(flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         # the flange's part along the axis about which the flange turns
-        flange_along = flange_axis_z*roll_axis_offset_z
-        part_of_flange_offset = roll_axis_offset_z - flange_along*flange_axis_z
+        flange_along = flange_axis_z * roll_axis_offset_z
+        part_of_flange_offset = roll_axis_offset_z - flange_along * flange_axis_z
         # distance of the flange's part from the axis about which the flange turns
         flange_offset = root(
-            part_of_flange_offset*part_of_flange_offset
-            + flange_along*flange_along*(flange_axis_x*flange_axis_x + flange_axis_y*flange_axis_y)
+            part_of_flange_offset * part_of_flange_offset
+            + flange_along * flange_along * (flange_axis_x * flange_axis_x + flange_axis_y * flange_axis_y)
         )
         # a part of the end point turns with the flange
         if not (
@@ -524,20 +362,15 @@ class Wrist2(OrientationKinematics):
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self._constants
-        roll_axis_offset_z = k.roll_axis_offset_z
-        tool_length_times_tool_side = k.tool_length_times_tool_side
-        # inputs must be numbers, and of reasonable size
-        if not (
-            -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
-            and -1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9
-        ):
+        roll_axis_offset_z, tool_length_times_tool_side = k.roll_axis_offset_z, k.tool_length_times_tool_side
+        if not are_usable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z):
             return Status.BAD_INPUT
         # the flange's part along the axis about which the flange turns
-        flange_along = flange_axis_z*roll_axis_offset_z
+        flange_along = flange_axis_z * roll_axis_offset_z
         return (
-            base_axis_x*flange_along + r13*tool_length_times_tool_side,
-            base_axis_y*flange_along + r23*tool_length_times_tool_side,
-            base_axis_z*flange_along + r33*tool_length_times_tool_side,
+            base_axis_x * flange_along + r13 * tool_length_times_tool_side,
+            base_axis_y * flange_along + r23 * tool_length_times_tool_side,
+            base_axis_z * flange_along + r33 * tool_length_times_tool_side,
         )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -551,8 +384,7 @@ class Wrist2(OrientationKinematics):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

@@ -32,64 +32,33 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from softkin._configuration import turn_inside
-from softkin._core import Image, Pose
+from softkin._core import Image, Mechanism, Pose
+from softkin._limits import beyond_turn
 from softkin._orientation import OrientationKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import (
-    Axis,
-    ConfigurationByte,
-    Diagnosis,
-    Matrix,
-    Parameter,
-    PlainFrame,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._scalar import DEGREE, arctan2, are_usable, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.wrist3 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
 
 
-class Constants(NamedTuple):
+class Constants:
     """What depends on the parameters alone: computed once, read by every program."""
 
-    tool_offset_x: float
-    tool_offset_y: float
-    tool_offset_z: float
-    offset_a: float
-    offset_b: float
-    offset_c: float
-    check_limits: bool
-    lower_a: float
-    upper_a: float
-    unlimited_a: bool
-    lowest_a: float
-    highest_a: float
-    single_a: bool
-    mid_a: float
-    lower_b: float
-    upper_b: float
-    unlimited_b: bool
-    lowest_b: float
-    highest_b: float
-    single_b: bool
-    mid_b: float
-    lower_c: float
-    upper_c: float
-    unlimited_c: bool
-    lowest_c: float
-    highest_c: float
-    single_c: bool
-    mid_c: float
-    machine_scale: float
+    def __init__(self, machine: Mechanism) -> None:
+        """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
+        p = machine.parameters
+        tool_offset_x, tool_offset_y, tool_offset_z = p["tool_offset_x"], p["tool_offset_y"], p["tool_offset_z"]
+        offset_a, offset_b, offset_c = p["offset_a"], p["offset_b"], p["offset_c"]
+        self.lowest_a, self.highest_a, self.single_a, self.mid_a = machine._window("a")
+        self.lowest_b, self.highest_b, self.single_b, self.mid_b = machine._window("b")
+        self.lowest_c, self.highest_c, self.single_c, self.mid_c = machine._window("c")
+        self.tool_offset_x, self.tool_offset_y, self.tool_offset_z = tool_offset_x, tool_offset_y, tool_offset_z
+        self.offset_a, self.offset_b, self.offset_c = offset_a, offset_b, offset_c
 
 
 class Wrist3(OrientationKinematics):
@@ -98,7 +67,7 @@ class Wrist3(OrientationKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist3"
     AXES = (
@@ -107,58 +76,19 @@ class Wrist3(OrientationKinematics):
         Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the turned Z", multi_turn=True),
     )
     PARAMETERS = (
-        Parameter(
-            name="tool_offset_x", kind="distance", unit="u", meaning="Wrist centre to the flange, along its X",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tool_offset_y", kind="distance", unit="u", meaning="Wrist centre to the flange, along its Y",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="tool_offset_z", kind="distance", unit="u", meaning="Wrist centre to the flange, along its Z",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_a", kind="angle", unit="deg", meaning="A: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_b", kind="angle", unit="deg", meaning="B: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="offset_c", kind="angle", unit="deg", meaning="C: axis value at the kinematic zero position",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_a", kind="angle", unit="deg", meaning="A: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_a", kind="angle", unit="deg", meaning="A: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_b", kind="angle", unit="deg", meaning="B: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_b", kind="angle", unit="deg", meaning="B: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="lower_c", kind="angle", unit="deg", meaning="C: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="upper_c", kind="angle", unit="deg", meaning="C: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
-        ),
-        Parameter(
-            name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
-            high=1.0, low_is_open=False, default=1.0,
-        ),
+        Parameter.of("distance", "tool_offset_x", "Wrist centre to the flange, along its X"),
+        Parameter.of("distance", "tool_offset_y", "Wrist centre to the flange, along its Y"),
+        Parameter.of("distance", "tool_offset_z", "Wrist centre to the flange, along its Z"),
+        Parameter.of("angle", "offset_a", "A: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_b", "B: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_c", "C: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_a", "A: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a", "A: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_b", "B: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_b", "B: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_c", "C: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_c", "C: upper limit of the axis, both 0: no limit"),
+        Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
     )
     CONFIGURATION = (
         ConfigurationByte(name="hand", kind="branch", branches=("down", "up"), default=1),
@@ -177,10 +107,21 @@ class Wrist3(OrientationKinematics):
     DISTANCE_AXES = (0, 1, 2)
 
     def __init__(
-        self, *, tool_offset_x: float = 0.0, tool_offset_y: float = 0.0, tool_offset_z: float = 0.0,
-        offset_a: float = 0.0, offset_b: float = 0.0, offset_c: float = 0.0, lower_a: float = 0.0,
-        upper_a: float = 0.0, lower_b: float = 0.0, upper_b: float = 0.0, lower_c: float = 0.0,
-        upper_c: float = 0.0, check_limits: bool = True,
+        self,
+        *,
+        tool_offset_x: float = 0.0,
+        tool_offset_y: float = 0.0,
+        tool_offset_z: float = 0.0,
+        offset_a: float = 0.0,
+        offset_b: float = 0.0,
+        offset_c: float = 0.0,
+        lower_a: float = 0.0,
+        upper_a: float = 0.0,
+        lower_b: float = 0.0,
+        upper_b: float = 0.0,
+        lower_c: float = 0.0,
+        upper_c: float = 0.0,
+        check_limits: bool = True,
     ) -> None:
         """Check the parameters and compute the constants; raises NOT_INITIALIZED for one that is not allowed.
 
@@ -198,127 +139,40 @@ class Wrist3(OrientationKinematics):
         upper_c: C: upper limit of the axis, both 0: no limit [deg]
         check_limits: inverse kinematics tests the limits
         """
-        values = self._accept(
-            tool_offset_x, tool_offset_y, tool_offset_z, offset_a, offset_b, offset_c, lower_a, upper_a, lower_b,
-            upper_b, lower_c, upper_c, check_limits,
-        )
-        self._constants = self._setup(*values)
-        tested = self._constants
-        if not self.checks_limits:
-            tested = tested._replace(
-                lowest_a=-1e12, lowest_b=-1e12, lowest_c=-1e12, highest_a=1e12, highest_b=1e12, highest_c=1e12,
-            )
-        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
-
-    def _setup(
-        self, tool_offset_x: float, tool_offset_y: float, tool_offset_z: float, offset_a: float, offset_b: float,
-        offset_c: float, lower_a: float, upper_a: float, lower_b: float, upper_b: float, lower_c: float,
-        upper_c: float, check_limits: bool,
-    ) -> Constants:
-        """The constants of the machine."""
-        if not (tool_offset_x >= -1e9 and tool_offset_x <= 1e9):
-            raise self._refusal("tool_offset_x: Wrist centre to the flange, along its X", tool_offset_x=tool_offset_x)
-        if not (tool_offset_y >= -1e9 and tool_offset_y <= 1e9):
-            raise self._refusal("tool_offset_y: Wrist centre to the flange, along its Y", tool_offset_y=tool_offset_y)
-        if not (tool_offset_z >= -1e9 and tool_offset_z <= 1e9):
-            raise self._refusal("tool_offset_z: Wrist centre to the flange, along its Z", tool_offset_z=tool_offset_z)
-        if not (offset_a >= -1e9 and offset_a <= 1e9):
-            raise self._refusal("offset_a: A: axis value at the kinematic zero position", offset_a=offset_a)
-        if not (offset_b >= -1e9 and offset_b <= 1e9):
-            raise self._refusal("offset_b: B: axis value at the kinematic zero position", offset_b=offset_b)
-        if not (offset_c >= -1e9 and offset_c <= 1e9):
-            raise self._refusal("offset_c: C: axis value at the kinematic zero position", offset_c=offset_c)
-        if not (lower_a >= -1e9 and lower_a <= 1e9):
-            raise self._refusal("lower_a: A: lower limit of the axis, both 0: no limit", lower_a=lower_a)
-        if not (upper_a >= -1e9 and upper_a <= 1e9):
-            raise self._refusal("upper_a: A: upper limit of the axis, both 0: no limit", upper_a=upper_a)
-        if not (lower_b >= -1e9 and lower_b <= 1e9):
-            raise self._refusal("lower_b: B: lower limit of the axis, both 0: no limit", lower_b=lower_b)
-        if not (upper_b >= -1e9 and upper_b <= 1e9):
-            raise self._refusal("upper_b: B: upper limit of the axis, both 0: no limit", upper_b=upper_b)
-        if not (lower_c >= -1e9 and lower_c <= 1e9):
-            raise self._refusal("lower_c: C: lower limit of the axis, both 0: no limit", lower_c=lower_c)
-        if not (upper_c >= -1e9 and upper_c <= 1e9):
-            raise self._refusal("upper_c: C: upper limit of the axis, both 0: no limit", upper_c=upper_c)
-        if not ((lower_a < upper_a) or (abs(lower_a) + abs(upper_a) <= 0.0)):
-            raise self._refusal("lower_a below upper_a, or both 0", lower_a=lower_a, upper_a=upper_a)
-        unlimited_a = abs(lower_a) + abs(upper_a) <= 0.0  # a: whether it has no limits
-        effective_lower_a = lower_a
-        effective_upper_a = upper_a
-        tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
-        lowest_a = -1e12 if unlimited_a else effective_lower_a - tolerance_a
-        highest_a = 1e12 if unlimited_a else effective_upper_a + tolerance_a
-        # at most one turn is inside the limits
-        single_a = (not unlimited_a) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
-        mid_a = 0.5*effective_lower_a + 0.5*effective_upper_a
-        if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
-            raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
-        unlimited_b = abs(lower_b) + abs(upper_b) <= 0.0  # b: whether it has no limits
-        effective_lower_b = lower_b
-        effective_upper_b = upper_b
-        tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
-        lowest_b = -1e12 if unlimited_b else effective_lower_b - tolerance_b
-        highest_b = 1e12 if unlimited_b else effective_upper_b + tolerance_b
-        # at most one turn is inside the limits
-        single_b = (not unlimited_b) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
-        mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
-        if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
-            raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
-        unlimited_c = abs(lower_c) + abs(upper_c) <= 0.0  # c: whether it has no limits
-        effective_lower_c = lower_c
-        effective_upper_c = upper_c
-        tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
-        lowest_c = -1e12 if unlimited_c else effective_lower_c - tolerance_c
-        highest_c = 1e12 if unlimited_c else effective_upper_c + tolerance_c
-        # at most one turn is inside the limits
-        single_c = (not unlimited_c) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
-        mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
-        machine_scale = 1.0  # characteristic length of the machine
-        return Constants(
-            tool_offset_x=tool_offset_x, tool_offset_y=tool_offset_y, tool_offset_z=tool_offset_z, offset_a=offset_a,
-            offset_b=offset_b, offset_c=offset_c, check_limits=check_limits, lower_a=effective_lower_a,
-            upper_a=effective_upper_a, unlimited_a=unlimited_a, lowest_a=lowest_a, highest_a=highest_a,
-            single_a=single_a, mid_a=mid_a, lower_b=effective_lower_b, upper_b=effective_upper_b,
-            unlimited_b=unlimited_b, lowest_b=lowest_b, highest_b=highest_b, single_b=single_b, mid_b=mid_b,
-            lower_c=effective_lower_c, upper_c=effective_upper_c, unlimited_c=unlimited_c, lowest_c=lowest_c,
-            highest_c=highest_c, single_c=single_c, mid_c=mid_c, machine_scale=machine_scale,
-        )
+        self._accept(locals())
+        self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a, axis_b, axis_c = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_c = k.offset_c
-        tool_offset_x = k.tool_offset_x
-        tool_offset_y = k.tool_offset_y
-        tool_offset_z = k.tool_offset_z
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
+        offset_a, offset_b, offset_c, tool_offset_x = k.offset_a, k.offset_b, k.offset_c, k.tool_offset_x
+        tool_offset_y, tool_offset_z = k.tool_offset_y, k.tool_offset_z
+        if not are_usable(axis_a, axis_b, axis_c):
             return Status.BAD_INPUT
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         cos_a = cos(a)
-        r13_at_b = -cos_a*sin_b
+        r13_at_b = -cos_a * sin_b
         cos_b = cos(b)
         sin_a = sin(a)
-        r11_at_b = cos_a*cos_b
-        c = DEGREE*(axis_c - offset_c)
+        r11_at_b = cos_a * cos_b
+        c = DEGREE * (axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)
-        r11_at_c = r11_at_b*cos_c - sin_a*sin_c
-        r12_at_c = -cos_c*sin_a - r11_at_b*sin_c
-        x = r11_at_c*tool_offset_x + r12_at_c*tool_offset_y + r13_at_b*tool_offset_z
-        r23_at_b = -sin_a*sin_b
-        r21_at_b = cos_b*sin_a
-        r21_at_c = cos_a*sin_c + r21_at_b*cos_c
-        r22_at_c = cos_a*cos_c - r21_at_b*sin_c
-        y = r21_at_c*tool_offset_x + r22_at_c*tool_offset_y + r23_at_b*tool_offset_z
-        r31_at_c = cos_c*sin_b
-        r32_at_c = -sin_b*sin_c
-        z = tool_offset_z*cos_b + r31_at_c*tool_offset_x + r32_at_c*tool_offset_y
+        r11_at_c = r11_at_b * cos_c - sin_a * sin_c
+        r12_at_c = -cos_c * sin_a - r11_at_b * sin_c
+        x = r11_at_c * tool_offset_x + r12_at_c * tool_offset_y + r13_at_b * tool_offset_z
+        r23_at_b = -sin_a * sin_b
+        r21_at_b = cos_b * sin_a
+        r21_at_c = cos_a * sin_c + r21_at_b * cos_c
+        r22_at_c = cos_a * cos_c - r21_at_b * sin_c
+        y = r21_at_c * tool_offset_x + r22_at_c * tool_offset_y + r23_at_b * tool_offset_z
+        r31_at_c = cos_c * sin_b
+        r32_at_c = -sin_b * sin_c
+        z = tool_offset_z * cos_b + r31_at_c * tool_offset_x + r32_at_c * tool_offset_y
         return (
             (x, y, z),
             ((r11_at_c, r12_at_c, r13_at_b), (r21_at_c, r22_at_c, r23_at_b), (r31_at_c, r32_at_c, cos_b)),
@@ -329,35 +183,32 @@ class Wrist3(OrientationKinematics):
         """The rotation of the frame."""
         axis_a, axis_b, axis_c = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_c = k.offset_c
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
+        offset_a, offset_b, offset_c = k.offset_a, k.offset_b, k.offset_c
+        if not are_usable(axis_a, axis_b, axis_c):
             return Status.BAD_INPUT
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         cos_b = cos(b)
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
-        r11_at_b = cos_a*cos_b
-        c = DEGREE*(axis_c - offset_c)
+        r11_at_b = cos_a * cos_b
+        c = DEGREE * (axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)
-        r11_at_c = r11_at_b*cos_c - sin_a*sin_c
-        r12_at_c = -cos_c*sin_a - r11_at_b*sin_c
+        r11_at_c = r11_at_b * cos_c - sin_a * sin_c
+        r12_at_c = -cos_c * sin_a - r11_at_b * sin_c
         sin_b = sin(b)
-        r13_at_b = -cos_a*sin_b
-        r21_at_b = cos_b*sin_a
-        r21_at_c = cos_a*sin_c + r21_at_b*cos_c
-        r22_at_c = cos_a*cos_c - r21_at_b*sin_c
-        r23_at_b = -sin_a*sin_b
-        r31_at_c = cos_c*sin_b
-        r32_at_c = -sin_b*sin_c
+        r13_at_b = -cos_a * sin_b
+        r21_at_b = cos_b * sin_a
+        r21_at_c = cos_a * sin_c + r21_at_b * cos_c
+        r22_at_c = cos_a * cos_c - r21_at_b * sin_c
+        r23_at_b = -sin_a * sin_b
+        r31_at_c = cos_c * sin_b
+        r32_at_c = -sin_b * sin_c
         return ((r11_at_c, r12_at_c, r13_at_b), (r21_at_c, r22_at_c, r23_at_b), (r31_at_c, r32_at_c, cos_b))
 
     def _branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
@@ -365,43 +216,35 @@ class Wrist3(OrientationKinematics):
         turn_a, turn_b, turn_c = turns
         ref_a, ref_b, ref_c = reference
         k = self._constants
-        mid_a = k.mid_a
-        mid_b = k.mid_b
-        mid_c = k.mid_c
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_c = k.offset_c
-        single_a = k.single_a
-        single_b = k.single_b
-        single_c = k.single_c
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9 and -1e9 <= ref_c <= 1e9):
+        mid_a, mid_b, mid_c, offset_a, offset_b = k.mid_a, k.mid_b, k.mid_c, k.offset_a, k.offset_b
+        offset_c, single_a, single_b, single_c = k.offset_c, k.single_a, k.single_b, k.single_c
+        if not are_usable(ref_a, ref_b, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
+        radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
         # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
         if radius_c > 1e-11:
-            direction_x_c = sigma_hand*r31
-            direction_y_c = -sigma_hand*r32
+            direction_x_c = sigma_hand * r31
+            direction_y_c = -sigma_hand * r32
         else:
-            free_c = (ref_c - offset_c)*DEGREE
+            free_c = (ref_c - offset_c) * DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
-        direction_y_a = -direction_x_c*r12 - direction_y_c*r11
+        scaled_r22_before_c = direction_x_c * r22 + direction_y_c * r21
+        direction_y_a = -direction_x_c * r12 - direction_y_c * r11
         open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this
-        near_a = 360.0*(turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
-        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0)/DEGREE  # A: whole turns added
+        near_a = 360.0 * (turn_a - 1 if turn_a > 0 else turn_a) if turn_a != 0 else open_a
+        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0) / DEGREE  # A: whole turns added
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
-        c_radius_of_b = sigma_hand*radius_c
+        c_radius_of_b = sigma_hand * radius_c
         open_b = mid_b if single_b else ref_b  # B: without a commanded turn, the value nearest to this
-        near_b = 360.0*(turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
-        axis_b = offset_b + arctan2(c_radius_of_b, r33 + 0.0)/DEGREE  # B: whole turns added
+        near_b = 360.0 * (turn_b - 1 if turn_b > 0 else turn_b) if turn_b != 0 else open_b
+        axis_b = offset_b + arctan2(c_radius_of_b, r33 + 0.0) / DEGREE  # B: whole turns added
         if not -180.000000001 <= axis_b - near_b < 179.999999999:
             axis_b = nearest_period(axis_b, near_b)
         open_c = mid_c if single_c else ref_c  # C: without a commanded turn, the value nearest to this
-        near_c = 360.0*(turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: whole turns added
+        near_c = 360.0 * (turn_c - 1 if turn_c > 0 else turn_c) if turn_c != 0 else open_c
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0) / DEGREE  # C: whole turns added
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         return (axis_a, axis_b, axis_c)
@@ -410,45 +253,14 @@ class Wrist3(OrientationKinematics):
         """The test of the limits."""
         axis_a, axis_b, axis_c = axes
         k = self._constants
-        highest_a = k.highest_a
-        highest_b = k.highest_b
-        highest_c = k.highest_c
-        lowest_a = k.lowest_a
-        lowest_b = k.lowest_b
-        lowest_c = k.lowest_c
-        # limits of A
-        if not (axis_a >= lowest_a):
-            missing = lowest_a - axis_a
-            if turn := turn_inside(axis_a, lowest_a, highest_a):
-                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A: below its lower limit [deg]", missing)
-        if not (axis_a <= highest_a):
-            missing = axis_a - highest_a
-            if turn := turn_inside(axis_a, lowest_a, highest_a):
-                return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "A: above its upper limit [deg]", missing)
-        # limits of B
-        if not (axis_b >= lowest_b):
-            missing = lowest_b - axis_b
-            if turn := turn_inside(axis_b, lowest_b, highest_b):
-                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "B: below its lower limit [deg]", missing)
-        if not (axis_b <= highest_b):
-            missing = axis_b - highest_b
-            if turn := turn_inside(axis_b, lowest_b, highest_b):
-                return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "B: above its upper limit [deg]", missing)
-        # limits of C
-        if not (axis_c >= lowest_c):
-            missing = lowest_c - axis_c
-            if turn := turn_inside(axis_c, lowest_c, highest_c):
-                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "C: below its lower limit [deg]", missing)
-        if not (axis_c <= highest_c):
-            missing = axis_c - highest_c
-            if turn := turn_inside(axis_c, lowest_c, highest_c):
-                return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
-            return Diagnosis(Status.UNREACHABLE, "C: above its upper limit [deg]", missing)
+        highest_a, highest_b, highest_c, lowest_a = k.highest_a, k.highest_b, k.highest_c, k.lowest_a
+        lowest_b, lowest_c = k.lowest_b, k.lowest_c
+        if not lowest_a <= axis_a <= highest_a:
+            return beyond_turn("A", axis_a, lowest_a, highest_a)
+        if not lowest_b <= axis_b <= highest_b:
+            return beyond_turn("B", axis_b, lowest_b, highest_b)
+        if not lowest_c <= axis_c <= highest_c:
+            return beyond_turn("C", axis_c, lowest_c, highest_c)
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
@@ -456,10 +268,9 @@ class Wrist3(OrientationKinematics):
         axis_a, axis_b, axis_c = axes
         k = self._constants
         offset_b = k.offset_b
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
+        if not are_usable(axis_a, axis_b, axis_c):
             return Status.BAD_INPUT
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
         return (sin_b,)
 
@@ -467,18 +278,16 @@ class Wrist3(OrientationKinematics):
         """The Jacobian by rows, per radian."""
         axis_a, axis_b, axis_c = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
+        offset_a, offset_b = k.offset_a, k.offset_b
+        if not are_usable(axis_a, axis_b, axis_c):
             return Status.BAD_INPUT
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
-        r13_at_b = -cos_a*sin_b
-        r23_at_b = -sin_a*sin_b
+        r13_at_b = -cos_a * sin_b
+        r23_at_b = -sin_a * sin_b
         cos_b = cos(b)
         return ((0.0, sin_a, r13_at_b), (0.0, -cos_a, r23_at_b), (1.0, 0.0, cos_b))
 
@@ -490,41 +299,36 @@ class Wrist3(OrientationKinematics):
         """The twist of the frame by rows, per radian."""
         axis_a, axis_b, axis_c = axes
         k = self._constants
-        offset_a = k.offset_a
-        offset_b = k.offset_b
-        offset_c = k.offset_c
-        tool_offset_x = k.tool_offset_x
-        tool_offset_y = k.tool_offset_y
-        tool_offset_z = k.tool_offset_z
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
+        offset_a, offset_b, offset_c, tool_offset_x = k.offset_a, k.offset_b, k.offset_c, k.tool_offset_x
+        tool_offset_y, tool_offset_z = k.tool_offset_y, k.tool_offset_z
+        if not are_usable(axis_a, axis_b, axis_c):
             return Status.BAD_INPUT
-        a = DEGREE*(axis_a - offset_a)
+        a = DEGREE * (axis_a - offset_a)
         sin_a = sin(a)
-        b = DEGREE*(axis_b - offset_b)
+        b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
-        r23_at_b = -sin_a*sin_b
+        r23_at_b = -sin_a * sin_b
         cos_a = cos(a)
         cos_b = cos(b)
-        r21_at_b = cos_b*sin_a
-        c = DEGREE*(axis_c - offset_c)
+        r21_at_b = cos_b * sin_a
+        c = DEGREE * (axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)
-        r21_at_c = cos_a*sin_c + r21_at_b*cos_c
-        r22_at_c = cos_a*cos_c - r21_at_b*sin_c
-        y = r21_at_c*tool_offset_x + r22_at_c*tool_offset_y + r23_at_b*tool_offset_z
-        r31_at_c = cos_c*sin_b
-        r32_at_c = -sin_b*sin_c
-        z = tool_offset_z*cos_b + r31_at_c*tool_offset_x + r32_at_c*tool_offset_y
-        r13_at_b = -cos_a*sin_b
-        r11_at_b = cos_a*cos_b
-        r11_at_c = r11_at_b*cos_c - sin_a*sin_c
-        r12_at_c = -cos_c*sin_a - r11_at_b*sin_c
-        x = r11_at_c*tool_offset_x + r12_at_c*tool_offset_y + r13_at_b*tool_offset_z
+        r21_at_c = cos_a * sin_c + r21_at_b * cos_c
+        r22_at_c = cos_a * cos_c - r21_at_b * sin_c
+        y = r21_at_c * tool_offset_x + r22_at_c * tool_offset_y + r23_at_b * tool_offset_z
+        r31_at_c = cos_c * sin_b
+        r32_at_c = -sin_b * sin_c
+        z = tool_offset_z * cos_b + r31_at_c * tool_offset_x + r32_at_c * tool_offset_y
+        r13_at_b = -cos_a * sin_b
+        r11_at_b = cos_a * cos_b
+        r11_at_c = r11_at_b * cos_c - sin_a * sin_c
+        r12_at_c = -cos_c * sin_a - r11_at_b * sin_c
+        x = r11_at_c * tool_offset_x + r12_at_c * tool_offset_y + r13_at_b * tool_offset_z
         return (
-            (-y, -z*cos_a, r23_at_b*z - y*cos_b),
-            (x, -z*sin_a, x*cos_b - r13_at_b*z),
-            (0.0, x*cos_a + y*sin_a, r13_at_b*y - r23_at_b*x),
+            (-y, -z * cos_a, r23_at_b * z - y * cos_b),
+            (x, -z * sin_a, x * cos_b - r13_at_b * z),
+            (0.0, x * cos_a + y * sin_a, r13_at_b * y - r23_at_b * x),
             (0.0, sin_a, r13_at_b),
             (0.0, -cos_a, r23_at_b),
             (1.0, 0.0, cos_b),
@@ -538,13 +342,11 @@ class Wrist3(OrientationKinematics):
         """From a flange that turns to the end point."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         k = self._constants
-        tool_offset_x = k.tool_offset_x
-        tool_offset_y = k.tool_offset_y
-        tool_offset_z = k.tool_offset_z
+        tool_offset_x, tool_offset_y, tool_offset_z = k.tool_offset_x, k.tool_offset_y, k.tool_offset_z
         return (
-            r11*tool_offset_x + r12*tool_offset_y + r13*tool_offset_z,
-            r21*tool_offset_x + r22*tool_offset_y + r23*tool_offset_z,
-            r31*tool_offset_x + r32*tool_offset_y + r33*tool_offset_z,
+            r11 * tool_offset_x + r12 * tool_offset_y + r13 * tool_offset_z,
+            r21 * tool_offset_x + r22 * tool_offset_y + r23 * tool_offset_z,
+            r31 * tool_offset_x + r32 * tool_offset_y + r33 * tool_offset_z,
         )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
@@ -558,8 +360,7 @@ class Wrist3(OrientationKinematics):
         return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        solve = self._all_checked
-        return solve(position, rotation, reference)
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

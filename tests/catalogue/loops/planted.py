@@ -92,15 +92,15 @@ _INLINE_ROOT = re.compile(r"\(sqrt\((\w+)\) if \1 > 0\.0 else 0\.0\)")
 _OF_THE_MACHINE = re.compile(r"\bk\.(\w+)")
 """A constant as the programs on arrays have it; the others give it a name of its own."""
 FIVE_BAR, TRIPOD, DELTA = "Kin_P2C_Type1", "Kin_Tripod_Rotary", "Kin_Delta_P3C_Type3"
-ALIGNED = "(rod_1_x*rod_2_y - rod_1_y*rod_2_x)"
-TOWARDS_THE_MODE = f"assembly_sign_by_outer_arm_squared*{ALIGNED}"
+ALIGNED = "(rod_1_x * rod_2_y - rod_1_y * rod_2_x)"
+TOWARDS_THE_MODE = f"assembly_sign_by_outer_arm_squared * {ALIGNED}"
 FAULTS = {
     "a knee on the other side": Fault(
-        FIVE_BAR, "root(sine_square_a1)*sigma_knee_1", "-root(sine_square_a1)*sigma_knee_1",
+        FIVE_BAR, "root(sine_square_a1) * sigma_knee_1", "-root(sine_square_a1) * sigma_knee_1",
         "test_round_trip.test_the_configuration_selects_the_same_axes",
     ),
     "a knee that has one side": Fault(
-        FIVE_BAR, "root(sine_square_a1)*sigma_knee_1", "root(sine_square_a1)",
+        FIVE_BAR, "root(sine_square_a1) * sigma_knee_1", "root(sine_square_a1)",
         "test_round_trip.test_the_configuration_selects_the_same_axes",
     ),
     "another byte for a knee": Fault(
@@ -115,12 +115,12 @@ FAULTS = {
         "test_round_trip.test_every_slot_satisfies_the_closure",
     ),
     "the other assembly mode in forward kinematics": Fault(
-        FIVE_BAR, "root(height_square/normal_square)*assembly_sign", "-root(height_square/normal_square)*assembly_sign",
+        FIVE_BAR, "root(height_square / normal_square) * assembly_sign", "-root(height_square / normal_square) * assembly_sign",
         "test_type2.test_forward_has_one_solution_a_side",
-        (("root(height_square/normal_divisor)*assembly_sign", "-root(height_square/normal_divisor)*assembly_sign"),),
+        (("root(height_square / normal_divisor) * assembly_sign", "-root(height_square / normal_divisor) * assembly_sign"),),
     ),
     "one assembly mode alone": Fault(
-        DELTA, "*assembly_sign\n", "\n", "test_type2.test_forward_has_one_solution_a_side"
+        DELTA, " * assembly_sign\n", "\n", "test_type2.test_forward_has_one_solution_a_side"
     ),
     "the other assembly mode not refused": Fault(
         FIVE_BAR, TOWARDS_THE_MODE, f"abs({TOWARDS_THE_MODE})", "test_type2.test_the_other_assembly_mode_is_refused"
@@ -133,11 +133,13 @@ FAULTS = {
         "test_type2.test_the_least_margin_is_sharp",
     ),
     "a margin of another size": Fault(
-        FIVE_BAR, f"margin_arms_aligned = {ALIGNED}", f"margin_arms_aligned = 1.001*{ALIGNED}",
+        FIVE_BAR, f"margin_arms_aligned = {ALIGNED}", f"margin_arms_aligned = 1.001 * {ALIGNED}",
         "test_type2.test_the_least_margin_is_sharp",
     ),
     "a margin that vanishes elsewhere": Fault(
-        FIVE_BAR, "margin_stretched_1 = (span_1_x*sin_a1 - y*cos_a1)", "margin_stretched_1 = (span_1_x*sin_a1 + y*cos_a1)",
+        FIVE_BAR,
+        "margin_stretched_1 = (span_1_x * sin_a1 - y * cos_a1)",
+        "margin_stretched_1 = (span_1_x * sin_a1 + y * cos_a1)",
         "test_margins.test_type_1_margins_are_those_of_b_and_type_2_of_a",
     ),
     "a leg that reaches too far": Fault(
@@ -158,7 +160,10 @@ FAULTS = {
         TRIPOD, "y + part) <= sin_max_angle_ball_joint", "y + part) <= 1.0",
         "test_bounds.test_a_ball_joint_ends_sharply",
         (
-            ("y + root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint", "y + root_of_3_by_2_by_arm_length_2*x) <= 1.0"),
+            (
+                "y + root_of_3_by_2_by_arm_length_2 * x) <= sin_max_angle_ball_joint",
+                "y + root_of_3_by_2_by_arm_length_2 * x) <= 1.0",
+            ),
         ),
     ),
     "a turn too many": Fault(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 
 import numpy as np
+import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -12,7 +13,7 @@ from softkin import _array, _scalar
 from softkin._types import Status as Code
 
 from derive.emit.python.arrays import array_body
-from derive.emit.python.layout import WIDTH, fold
+from derive.emit.python.layout import WIDTH, UnformattedError, assigned, formatted
 from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, literal, spelled
 from derive.emit.python.program import Argument, Method, scalar_body
 from derive.ir.constants import (
@@ -93,15 +94,31 @@ def test_names_of_python_are_avoided() -> None:
     assert [spelled(n) for n in ("lambda", "root", "axes", "link_length_1")] == ["lambda_", "root_", "axes_", "link_length_1"]
 
 
-@settings(deadline=None)
-@given(expression=EXPRESSIONS)
-def test_folded_lines_mean_the_same(expression: sp.Expr) -> None:
-    for printer in (ScalarPrinter(), ArrayPrinter()):
-        text = printer.print(expression)
-        lines = fold(f"result = {text}", 8)
-        folded = ast.parse("\n".join(line.strip() for line in lines))
-        assert ast.dump(folded) == ast.dump(ast.parse(f"result = {text}"))
-        assert all(len(line) <= WIDTH or len(line.split()) <= 3 for line in lines)
+@settings(deadline=None, max_examples=6)
+@given(expressions=st.lists(EXPRESSIONS, min_size=20, max_size=40))
+def test_laid_out_statements_mean_the_same(expressions: list[sp.Expr]) -> None:
+    printers = (ScalarPrinter(), ArrayPrinter())
+    lines = [f"        result = {printer.print(e)}" for printer in printers for e in expressions]
+    text = "\n".join(["def f(first, second, third):", "    if first:", *lines])
+    laid_out = formatted({"folder/a.py": text, "b.txt": text})
+    assert laid_out["b.txt"] == text
+    found = laid_out["folder/a.py"]
+    assert found != text and ast.dump(ast.parse(found)) == ast.dump(ast.parse(text))
+    assert all(len(line) <= WIDTH or len(line.split()) <= 3 for line in found.splitlines())
+
+
+def test_what_is_no_python_is_not_laid_out() -> None:
+    with pytest.raises(UnformattedError, match="wrong.py"):
+        formatted({"right.py": "a = 1\n", "wrong.py": "a = (\n"})
+
+
+@given(names=st.lists(st.from_regex("[a-z_]{1,40}", fullmatch=True), unique=True, max_size=20))
+def test_values_are_assigned_in_lines_that_fit(names: list[str]) -> None:
+    lines = assigned({name: f"k.{name}" for name in names})
+    pairs = [pair for line in lines for pair in zip(*(side.split(", ") for side in line.split(" = ")), strict=True)]
+    assert pairs == [(name, f"k.{name}") for name in names]
+    assert all(8 + len(line) <= WIDTH for line in lines)
+    assert len(lines) <= max(1, len(names))
 
 
 X, Y = real("axis_x"), real("axis_y")

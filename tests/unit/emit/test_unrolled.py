@@ -20,7 +20,9 @@ IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 Frames = list[tuple[tuple[float, ...], tuple[tuple[float, ...], ...]]]
 
 
-def robot_of(description: Description, limit: float | None = None, offset: float = 0.0) -> Mechanism:
+def robot_of(
+    description: Description, limit: float | None = None, offset: float = 0.0, check_limits: bool = True
+) -> Mechanism:
     """A machine of the description's own dimensions; the limits are those of every axis that turns."""
     values: dict[str, float] = {p.name: p.nominal for p in description.parameters}
     values |= {joint.offset.name: offset * k for k, joint in enumerate(description.joints, 1)}
@@ -28,7 +30,7 @@ def robot_of(description: Description, limit: float | None = None, offset: float
         for joint in description.joints:
             if joint.is_angle and joint.pitch == 0:
                 values |= {f"lower_{joint.key}": -0.7 * limit, f"upper_{joint.key}": limit}
-    return softkin.catalogue()[description.name](**values)
+    return softkin.catalogue()[description.name](**values, check_limits=check_limits)
 
 
 def samples(robot: Mechanism, count: int) -> tuple[Frames, np.ndarray]:
@@ -52,7 +54,7 @@ def looped(robot: Mechanism, frame: tuple[object, ...], reference: tuple[float, 
     return Mechanism._every_branch(robot, position, rotation, reference)
 
 
-@pytest.mark.parametrize("limit", [None, 120.0], ids=["no limits", "limits"])
+@pytest.mark.parametrize("limit", [None, 120.0, 330.0], ids=["no limits", "limits", "more than a turn"])
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
 def test_inverse_all_is_its_branches_one_by_one(description: Description, limit: float | None) -> None:
     robot = robot_of(description, limit)
@@ -67,6 +69,33 @@ def test_inverse_all_is_its_branches_one_by_one(description: Description, limit:
                 answers += 1
                 assert found.axes == pytest.approx(axes, rel=1e-9, abs=1e-9)
     assert answers >= 3
+
+
+@pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
+def test_inverse_all_without_its_limits_answers_what_is_beyond_them(description: Description) -> None:
+    """Limits that are not tested still say which turn an axis takes, where one value is inside."""
+    robot = robot_of(description, 20.0, check_limits=False)
+    frames, references = samples(robot, 6 if description.search is not None else 30)
+    for frame, reference in zip(frames, references.tolist(), strict=True):
+        wanted = looped(robot, frame, tuple(reference))
+        for found, axes in zip(robot.inverse_all(frame, reference), wanted, strict=True):
+            assert (found.axes is None) == isinstance(axes, int)
+            assert axes == (float(found.status) if found.axes is None else pytest.approx(found.axes, rel=1e-9, abs=1e-9))
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -2e9])
+@pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
+def test_inverse_all_of_numbers_that_are_none_is_its_branches_one_by_one(description: Description, value: float) -> None:
+    """In every place of position and reference: what a program does not read does no harm."""
+    robot = robot_of(description)
+    (_, frame), _ = samples(robot, 2)
+    position, count = frame[0], len(robot.AXES)
+    near = [((value,) * count)] + [tuple(value if i == k else 0.0 for i in range(count)) for k in range(count)]
+    spoiled = [(tuple(value if i == k else c for i, c in enumerate(position)), frame[1]) for k in range(3)]
+    for asked, reference in [*((s, (0.0,) * count) for s in spoiled), *((frame, reference) for reference in near)]:
+        wanted = looped(robot, asked, reference)
+        for found, axes in zip(robot.inverse_all(asked, reference), wanted, strict=True):
+            assert axes == (float(found.status) if found.axes is None else pytest.approx(found.axes, rel=1e-9, abs=1e-9))
 
 
 @pytest.mark.parametrize("offset", [0.0, 7.0], ids=["no offsets", "offsets"])

@@ -10,6 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from derive.description.catalogue import MECHANISMS, load
+from derive.equations.windows import limits_of_axis
 from derive.ir.constants import (
     LARGEST,
     LIMIT,
@@ -18,7 +19,6 @@ from derive.ir.interpret import run
 from derive.ir.program import (
     Status,
 )
-from derive.kinematics.parameters import limits_of_axis
 from tests.unit.kinematics.machine import machine
 
 PROGRAM = limits_of_axis()

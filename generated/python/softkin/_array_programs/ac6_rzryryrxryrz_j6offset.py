@@ -17,6 +17,7 @@ from softkin._array import (
     nearest_period,
     opposite,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -36,26 +37,42 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def try_joint(self, given: Values, status: Codes) -> Values:
         """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
         (
-            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_elbow, wanted_shoulder,
+            free_a1,
+            free_a2,
+            freed,
+            freed_angle,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            side,
+            tried,
+            wanted_elbow,
+            wanted_shoulder,
         ) = given
         k = self.constants
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the point in which the last axes intersect
-        wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r13
-        wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r23
+        wrist_x_tried = goal_x + (goal_r12 * sin_q6_tried - goal_r11 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r13
+        wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r23
         # distance of the point from the axis of q1
-        distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
-        slope_wrist_x_tried = k.j6_offset_x*(goal_r12*cos_q6_tried + goal_r11*sin_q6_tried)
-        slope_wrist_y_tried = k.j6_offset_x*(goal_r22*cos_q6_tried + goal_r21*sin_q6_tried)
+        distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
+        slope_wrist_x_tried = k.j6_offset_x * (goal_r12 * cos_q6_tried + goal_r11 * sin_q6_tried)
+        slope_wrist_y_tried = k.j6_offset_x * (goal_r22 * cos_q6_tried + goal_r21 * sin_q6_tried)
 
         def elsewhere_cos_q1_tried(free_a1: Real, freed: Whole, freed_angle: Real) -> Reals:
             chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1 where the pose leaves it free
@@ -63,26 +80,24 @@ class ArrayPrograms(Programs):
             sin_q1_tried = sin(chosen_q1)
             return (cos_q1_tried, sin_q1_tried, 0.0, 0.0)
 
-        along_q1_tried = wanted_shoulder*wrist_x_tried  # rotation by q1 that points the arm at the point
+        along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
         slope_distance_q1_tried = select(
             distance_q1_tried > 0.0,
-            (
-                (slope_wrist_x_tried*wrist_x_tried + slope_wrist_y_tried*wrist_y_tried)
-                /select(distance_q1_tried > 0.0, distance_q1_tried, 1.0)
-            ),
+            (slope_wrist_x_tried * wrist_x_tried + slope_wrist_y_tried * wrist_y_tried)
+            / select(distance_q1_tried > 0.0, distance_q1_tried, 1.0),
             0.0,
         )
         holds = distance_q1_tried > k.machine_scale_times_free_angle
         length_q1_tried = select(holds, distance_q1_tried, 1.0)
         slope_length_q1_tried = select(holds, slope_distance_q1_tried, 0.0)
-        one_by_distance_q1_tried = 1.0/length_q1_tried
-        cos_q1_tried = along_q1_tried*one_by_distance_q1_tried
-        across_q1_tried = wanted_shoulder*wrist_y_tried
-        sin_q1_tried = across_q1_tried*one_by_distance_q1_tried
-        slope_along_q1_tried = wanted_shoulder*slope_wrist_x_tried
-        slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)*one_by_distance_q1_tried
-        slope_across_q1_tried = wanted_shoulder*slope_wrist_y_tried
-        slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)*one_by_distance_q1_tried
+        one_by_distance_q1_tried = 1.0 / length_q1_tried
+        cos_q1_tried = along_q1_tried * one_by_distance_q1_tried
+        across_q1_tried = wanted_shoulder * wrist_y_tried
+        sin_q1_tried = across_q1_tried * one_by_distance_q1_tried
+        slope_along_q1_tried = wanted_shoulder * slope_wrist_x_tried
+        slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried * cos_q1_tried) * one_by_distance_q1_tried
+        slope_across_q1_tried = wanted_shoulder * slope_wrist_y_tried
+        slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried * sin_q1_tried) * one_by_distance_q1_tried
         # in the singularity: the angle of the reference
         cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried = elsewhere(
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
@@ -91,80 +106,82 @@ class ArrayPrograms(Programs):
             (free_a1, freed, freed_angle),
         )
         # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - k.a1
-        wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r33
+        wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
+        wrist_z_tried = goal_z + (goal_r32 * sin_q6_tried - goal_r31 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r33
         wrist_z_from_q1_tried = wrist_z_tried - k.d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
+        reach_tried = sqrt(
+            wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
+        )
         part_of_one_less_cos_q3_tried = k.a2_plus_effective_q3_tried - reach_tried
         part_of_one_less_cos_q3_tried_2 = k.a2_plus_effective_q3_tried + reach_tried
         # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3_tried = part_of_one_less_cos_q3_tried*part_of_one_less_cos_q3_tried_2
+        one_less_cos_q3_tried = part_of_one_less_cos_q3_tried * part_of_one_less_cos_q3_tried_2
         part_of_one_plus_cos_q3_tried = k.a2_minus_effective_q3_tried - reach_tried
         part_of_one_plus_cos_q3_tried_2 = k.a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried*part_of_one_plus_cos_q3_tried_2
+        one_plus_cos_q3_tried = -part_of_one_plus_cos_q3_tried * part_of_one_plus_cos_q3_tried_2
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        slope_wrist_z_tried = k.j6_offset_x*(goal_r32*cos_q6_tried + goal_r31*sin_q6_tried)
+        slope_wrist_z_tried = k.j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
-            slope_wrist_x_tried*cos_q1_tried + slope_wrist_y_tried*sin_q1_tried + slope_cos_q1_tried*wrist_x_tried
-            + slope_sin_q1_tried*wrist_y_tried
+            slope_wrist_x_tried * cos_q1_tried
+            + slope_wrist_y_tried * sin_q1_tried
+            + slope_cos_q1_tried * wrist_x_tried
+            + slope_sin_q1_tried * wrist_y_tried
         )
         slope_reach_tried = select(
             reach_tried > 0.0,
-            (
-                (slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried + slope_wrist_z_tried*wrist_z_from_q1_tried)
-                /select(reach_tried > 0.0, reach_tried, 1.0)
-            ),
+            (slope_wrist_x_from_q1_tried * wrist_x_from_q1_tried + slope_wrist_z_tried * wrist_z_from_q1_tried)
+            / select(reach_tried > 0.0, reach_tried, 1.0),
             0.0,
         )
         slope_one_less_cos_q3_tried = (
-            (part_of_one_less_cos_q3_tried - part_of_one_less_cos_q3_tried_2)*slope_reach_tried
-        )
+            part_of_one_less_cos_q3_tried - part_of_one_less_cos_q3_tried_2
+        ) * slope_reach_tried
         slope_one_plus_cos_q3_tried = (
-            (part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried)*slope_reach_tried
-        )
+            part_of_one_plus_cos_q3_tried_2 - part_of_one_plus_cos_q3_tried
+        ) * slope_reach_tried
         slope_sum_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
         holds = sum_of_cos_q3_tried > 0.0
         divisor_of_cos_q3_tried = select(holds, sum_of_cos_q3_tried, 1.0)
         slope_divisor_of_cos_q3_tried = select(holds, slope_sum_of_cos_q3_tried, 0.0)
-        one_by_sum_of_cos_q3_tried = 1.0/divisor_of_cos_q3_tried
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_of_cos_q3_tried
-        sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
-        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
+        one_by_sum_of_cos_q3_tried = 1.0 / divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_of_cos_q3_tried
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        # sine squared, times the squared scale
+        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
-        sin_swing_q3_tried = 2.0*one_by_sum_of_cos_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried
+        sin_swing_q3_tried = 2.0 * one_by_sum_of_cos_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_q3_tried = k.a3_by_effective_q3_tried*cos_swing_q3_tried + k.d4_by_effective_q3_tried*sin_swing_q3_tried
-        sin_q3_tried = k.a3_by_effective_q3_tried*sin_swing_q3_tried - k.d4_by_effective_q3_tried*cos_swing_q3_tried
+        cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
+        sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
-            (
-                slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
-                - slope_divisor_of_cos_q3_tried*cos_swing_q3_tried
-            )
-            *one_by_sum_of_cos_q3_tried
-        )
+            slope_one_plus_cos_q3_tried
+            - slope_one_less_cos_q3_tried
+            - slope_divisor_of_cos_q3_tried * cos_swing_q3_tried
+        ) * one_by_sum_of_cos_q3_tried
         slope_sine_square_q3_tried = (
-            one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
+            one_less_cos_q3_tried * slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried * slope_one_less_cos_q3_tried
         )
         slope_root_of_sin_swing_q3_tried = select(
             root_of_sin_swing_q3_tried > 0.0,
-            (
-                0.5*slope_sine_square_q3_tried
-                /select(root_of_sin_swing_q3_tried > 0.0, root_of_sin_swing_q3_tried, 1.0)
-            ),
+            0.5
+            * slope_sine_square_q3_tried
+            / select(root_of_sin_swing_q3_tried > 0.0, root_of_sin_swing_q3_tried, 1.0),
             0.0,
         )
         slope_sin_swing_q3_tried = (
-            (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried - slope_divisor_of_cos_q3_tried*sin_swing_q3_tried)
-            *one_by_sum_of_cos_q3_tried
-        )
+            2.0 * sign_elbow_tried * slope_root_of_sin_swing_q3_tried
+            - slope_divisor_of_cos_q3_tried * sin_swing_q3_tried
+        ) * one_by_sum_of_cos_q3_tried
         slope_cos_q3_tried = (
-            k.a3_by_effective_q3_tried*slope_cos_swing_q3_tried + k.d4_by_effective_q3_tried*slope_sin_swing_q3_tried
+            k.a3_by_effective_q3_tried * slope_cos_swing_q3_tried
+            + k.d4_by_effective_q3_tried * slope_sin_swing_q3_tried
         )
         slope_sin_q3_tried = (
-            k.a3_by_effective_q3_tried*slope_sin_swing_q3_tried - k.d4_by_effective_q3_tried*slope_cos_swing_q3_tried
+            k.a3_by_effective_q3_tried * slope_sin_swing_q3_tried
+            - k.d4_by_effective_q3_tried * slope_cos_swing_q3_tried
         )
 
         def elsewhere_cos_q2_tried(free_a2: Real, freed: Whole, freed_angle: Real) -> Reals:
@@ -173,43 +190,45 @@ class ArrayPrograms(Programs):
             sin_q2_tried = sin(chosen_q2)
             return (cos_q2_tried, sin_q2_tried, 0.0, 0.0)
 
-        arm_along_q2_tried = k.a3*sin_q3_tried + k.d4*cos_q3_tried
-        arm_across_q2_tried = k.a2 + k.a3*cos_q3_tried - k.d4*sin_q3_tried
+        arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
+        arm_across_q2_tried = k.a2 + k.a3 * cos_q3_tried - k.d4 * sin_q3_tried
         # rotation by q2 that takes the arm to the point that it must reach
-        along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
-        across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
-        part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
-        slope_arm_along_q2_tried = k.a3*slope_sin_q3_tried + k.d4*slope_cos_q3_tried
-        slope_arm_across_q2_tried = k.a3*slope_cos_q3_tried - k.d4*slope_sin_q3_tried
+        along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
+        across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
+        part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
+        slope_arm_along_q2_tried = k.a3 * slope_sin_q3_tried + k.d4 * slope_cos_q3_tried
+        slope_arm_across_q2_tried = k.a3 * slope_cos_q3_tried - k.d4 * slope_sin_q3_tried
         slope_along_q2_tried = (
-            arm_across_q2_tried*slope_wrist_z_tried + arm_along_q2_tried*slope_wrist_x_from_q1_tried
-            + slope_arm_across_q2_tried*wrist_z_from_q1_tried + slope_arm_along_q2_tried*wrist_x_from_q1_tried
+            arm_across_q2_tried * slope_wrist_z_tried
+            + arm_along_q2_tried * slope_wrist_x_from_q1_tried
+            + slope_arm_across_q2_tried * wrist_z_from_q1_tried
+            + slope_arm_along_q2_tried * wrist_x_from_q1_tried
         )
         slope_across_q2_tried = (
-            arm_across_q2_tried*slope_wrist_x_from_q1_tried + slope_arm_across_q2_tried*wrist_x_from_q1_tried
-            - arm_along_q2_tried*slope_wrist_z_tried - slope_arm_along_q2_tried*wrist_z_from_q1_tried
+            arm_across_q2_tried * slope_wrist_x_from_q1_tried
+            + slope_arm_across_q2_tried * wrist_x_from_q1_tried
+            - arm_along_q2_tried * slope_wrist_z_tried
+            - slope_arm_along_q2_tried * wrist_z_from_q1_tried
         )
         root_of_length_q2_tried = root(part_of_length_q2_tried)
         slope_root_of_length_q2_tried = select(
             root_of_length_q2_tried > 0.0,
-            (
-                (across_q2_tried*slope_across_q2_tried + along_q2_tried*slope_along_q2_tried)
-                /select(root_of_length_q2_tried > 0.0, root_of_length_q2_tried, 1.0)
-            ),
+            (across_q2_tried * slope_across_q2_tried + along_q2_tried * slope_along_q2_tried)
+            / select(root_of_length_q2_tried > 0.0, root_of_length_q2_tried, 1.0),
             0.0,
         )
         holds = (part_of_length_q2_tried > 0.0) & (reach_tried > k.machine_scale_times_free_angle)
         length_q2_tried = select(holds, root_of_length_q2_tried, 1.0)
         slope_length_q2_tried = select(holds, slope_root_of_length_q2_tried, 0.0)
-        one_by_root_of_length_q2_tried = 1.0/length_q2_tried
-        cos_q2_tried = along_q2_tried*one_by_root_of_length_q2_tried
-        sin_q2_tried = across_q2_tried*one_by_root_of_length_q2_tried
+        one_by_root_of_length_q2_tried = 1.0 / length_q2_tried
+        cos_q2_tried = along_q2_tried * one_by_root_of_length_q2_tried
+        sin_q2_tried = across_q2_tried * one_by_root_of_length_q2_tried
         slope_cos_q2_tried = (
-            (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)*one_by_root_of_length_q2_tried
-        )
+            slope_along_q2_tried - slope_length_q2_tried * cos_q2_tried
+        ) * one_by_root_of_length_q2_tried
         slope_sin_q2_tried = (
-            (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)*one_by_root_of_length_q2_tried
-        )
+            slope_across_q2_tried - slope_length_q2_tried * sin_q2_tried
+        ) * one_by_root_of_length_q2_tried
         # in the singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
@@ -217,57 +236,87 @@ class ArrayPrograms(Programs):
             elsewhere_cos_q2_tried,
             (free_a2, freed, freed_angle),
         )
-        r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried
-        sin_q23_tried = cos_q2_tried*sin_q3_tried + cos_q3_tried*sin_q2_tried
-        cos_q23_tried = cos_q2_tried*cos_q3_tried - sin_q2_tried*sin_q3_tried
-        r11_from_q123_tried = r11_from_q1_tried*cos_q23_tried - goal_r31*sin_q23_tried
-        r12_from_q1_tried = goal_r12*cos_q1_tried + goal_r22*sin_q1_tried
-        r12_from_q123_tried = r12_from_q1_tried*cos_q23_tried - goal_r32*sin_q23_tried
-        r12_from_q123_before_q6_tried = r12_from_q123_tried*cos_q6_tried + r11_from_q123_tried*sin_q6_tried
-        slope_r11_from_q1_tried = goal_r11*slope_cos_q1_tried + goal_r21*slope_sin_q1_tried
+        r11_from_q1_tried = goal_r11 * cos_q1_tried + goal_r21 * sin_q1_tried
+        sin_q23_tried = cos_q2_tried * sin_q3_tried + cos_q3_tried * sin_q2_tried
+        cos_q23_tried = cos_q2_tried * cos_q3_tried - sin_q2_tried * sin_q3_tried
+        r11_from_q123_tried = r11_from_q1_tried * cos_q23_tried - goal_r31 * sin_q23_tried
+        r12_from_q1_tried = goal_r12 * cos_q1_tried + goal_r22 * sin_q1_tried
+        r12_from_q123_tried = r12_from_q1_tried * cos_q23_tried - goal_r32 * sin_q23_tried
+        r12_from_q123_before_q6_tried = r12_from_q123_tried * cos_q6_tried + r11_from_q123_tried * sin_q6_tried
+        slope_r11_from_q1_tried = goal_r11 * slope_cos_q1_tried + goal_r21 * slope_sin_q1_tried
         slope_sin_q23_tried = (
-            slope_sin_q3_tried*cos_q2_tried + slope_sin_q2_tried*cos_q3_tried + slope_cos_q3_tried*sin_q2_tried
-            + slope_cos_q2_tried*sin_q3_tried
+            slope_sin_q3_tried * cos_q2_tried
+            + slope_sin_q2_tried * cos_q3_tried
+            + slope_cos_q3_tried * sin_q2_tried
+            + slope_cos_q2_tried * sin_q3_tried
         )
         slope_cos_q23_tried = (
-            slope_cos_q3_tried*cos_q2_tried + slope_cos_q2_tried*cos_q3_tried - slope_sin_q3_tried*sin_q2_tried
-            - slope_sin_q2_tried*sin_q3_tried
+            slope_cos_q3_tried * cos_q2_tried
+            + slope_cos_q2_tried * cos_q3_tried
+            - slope_sin_q3_tried * sin_q2_tried
+            - slope_sin_q2_tried * sin_q3_tried
         )
         slope_r11_from_q123_tried = (
-            slope_r11_from_q1_tried*cos_q23_tried + r11_from_q1_tried*slope_cos_q23_tried
-            - goal_r31*slope_sin_q23_tried
+            slope_r11_from_q1_tried * cos_q23_tried
+            + r11_from_q1_tried * slope_cos_q23_tried
+            - goal_r31 * slope_sin_q23_tried
         )
-        slope_r12_from_q1_tried = goal_r12*slope_cos_q1_tried + goal_r22*slope_sin_q1_tried
+        slope_r12_from_q1_tried = goal_r12 * slope_cos_q1_tried + goal_r22 * slope_sin_q1_tried
         slope_r12_from_q123_tried = (
-            slope_r12_from_q1_tried*cos_q23_tried + r12_from_q1_tried*slope_cos_q23_tried
-            - goal_r32*slope_sin_q23_tried
+            slope_r12_from_q1_tried * cos_q23_tried
+            + r12_from_q1_tried * slope_cos_q23_tried
+            - goal_r32 * slope_sin_q23_tried
         )
-        slope_r12_from_q123_before_q6_tried = (
-            (r11_from_q123_tried + slope_r12_from_q123_tried)*cos_q6_tried
-            + (slope_r11_from_q123_tried - r12_from_q123_tried)*sin_q6_tried
-        )
-        guard = 1.000000000001 - cos_swing_q3_tried*cos_swing_q3_tried
-        slope_guard = -2.0*slope_cos_swing_q3_tried*cos_swing_q3_tried
+        slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried) * cos_q6_tried + (
+            slope_r11_from_q123_tried - r12_from_q123_tried
+        ) * sin_q6_tried
+        guard = 1.000000000001 - cos_swing_q3_tried * cos_swing_q3_tried
+        slope_guard = -2.0 * slope_cos_swing_q3_tried * cos_swing_q3_tried
         return (
-            -r12_from_q123_before_q6_tried, -slope_r12_from_q123_before_q6_tried, guard, slope_guard, cos_q1_tried,
-            sin_q1_tried, cos_q2_tried, sin_q2_tried,
+            -r12_from_q123_before_q6_tried,
+            -slope_r12_from_q123_before_q6_tried,
+            guard,
+            slope_guard,
+            cos_q1_tried,
+            sin_q1_tried,
+            cos_q2_tried,
+            sin_q2_tried,
         )
 
     def finish_root(self, given: Values, status: Codes) -> Values:
         """The joints at a root, improved by Newton's method, and whether they are on the branch."""
         (
-            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_crossing, wanted_elbow,
-            wanted_shoulder, wanted_wrist,
+            free_a1,
+            free_a2,
+            freed,
+            freed_angle,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            side,
+            tried,
+            wanted_crossing,
+            wanted_elbow,
+            wanted_shoulder,
+            wanted_wrist,
         ) = given
         k = self.constants
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the point in which the last axes intersect
-        wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r13
-        wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r23
+        wrist_x_tried = goal_x + (goal_r12 * sin_q6_tried - goal_r11 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r13
+        wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r23
         # distance of the point from the axis of q1
-        distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
+        distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
 
         def elsewhere_cos_q1_tried(free_a1: Real, freed: Whole, freed_angle: Real) -> Reals:
             chosen_q1 = select(freed == 0, freed_angle, free_a1)  # q1 where the pose leaves it free
@@ -275,11 +324,11 @@ class ArrayPrograms(Programs):
             sin_q1_tried = sin(chosen_q1)
             return (cos_q1_tried, sin_q1_tried)
 
-        along_q1_tried = wanted_shoulder*wrist_x_tried  # rotation by q1 that points the arm at the point
+        along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
         length_q1_tried = select(distance_q1_tried > k.machine_scale_times_free_angle, distance_q1_tried, 1.0)
-        cos_q1_tried = along_q1_tried/length_q1_tried
-        across_q1_tried = wanted_shoulder*wrist_y_tried
-        sin_q1_tried = across_q1_tried/length_q1_tried
+        cos_q1_tried = along_q1_tried / length_q1_tried
+        across_q1_tried = wanted_shoulder * wrist_y_tried
+        sin_q1_tried = across_q1_tried / length_q1_tried
         # in the singularity: the angle of the reference
         cos_q1_tried, sin_q1_tried = elsewhere(
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
@@ -288,29 +337,32 @@ class ArrayPrograms(Programs):
             (free_a1, freed, freed_angle),
         )
         # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - k.a1
-        wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*k.j6_offset_x - k.d6*goal_r33
+        wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
+        wrist_z_tried = goal_z + (goal_r32 * sin_q6_tried - goal_r31 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r33
         wrist_z_from_q1_tried = wrist_z_tried - k.d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
+        reach_tried = sqrt(
+            wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
+        )
         # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3_tried = (
-            (k.a2_plus_effective_q3_tried + reach_tried)*(k.a2_plus_effective_q3_tried - reach_tried)
+        one_less_cos_q3_tried = (k.a2_plus_effective_q3_tried + reach_tried) * (
+            k.a2_plus_effective_q3_tried - reach_tried
         )
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = (
-            (reach_tried - k.a2_minus_effective_q3_tried)*(k.a2_minus_effective_q3_tried + reach_tried)
+        one_plus_cos_q3_tried = (reach_tried - k.a2_minus_effective_q3_tried) * (
+            k.a2_minus_effective_q3_tried + reach_tried
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         divisor_of_cos_q3_tried = select(sum_of_cos_q3_tried > 0.0, sum_of_cos_q3_tried, 1.0)
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
-        sign_elbow_tried = side*wanted_elbow  # elbow: +1 up, -1 down
-        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # sine squared, times the squared scale
-        sin_swing_q3_tried = 2.0*root(sine_square_q3_tried)*sign_elbow_tried/divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        # sine squared, times the squared scale
+        sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
+        sin_swing_q3_tried = 2.0 * root(sine_square_q3_tried) * sign_elbow_tried / divisor_of_cos_q3_tried
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_q3_tried = k.a3_by_effective_q3_tried*cos_swing_q3_tried + k.d4_by_effective_q3_tried*sin_swing_q3_tried
-        sin_q3_tried = k.a3_by_effective_q3_tried*sin_swing_q3_tried - k.d4_by_effective_q3_tried*cos_swing_q3_tried
+        cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
+        sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
 
         def elsewhere_cos_q2_tried(free_a2: Real, freed: Whole, freed_angle: Real) -> Reals:
             chosen_q2 = select(freed == 1, freed_angle, free_a2)  # q2 where the pose leaves it free
@@ -318,19 +370,19 @@ class ArrayPrograms(Programs):
             sin_q2_tried = sin(chosen_q2)
             return (cos_q2_tried, sin_q2_tried)
 
-        arm_along_q2_tried = k.a3*sin_q3_tried + k.d4*cos_q3_tried
-        arm_across_q2_tried = k.a2 + k.a3*cos_q3_tried - k.d4*sin_q3_tried
+        arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
+        arm_across_q2_tried = k.a2 + k.a3 * cos_q3_tried - k.d4 * sin_q3_tried
         # rotation by q2 that takes the arm to the point that it must reach
-        along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
-        across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
-        part_of_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried
+        along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
+        across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
+        part_of_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
         length_q2_tried = select(
             (part_of_length_q2_tried > 0.0) & (reach_tried > k.machine_scale_times_free_angle),
             root(part_of_length_q2_tried),
             1.0,
         )
-        cos_q2_tried = along_q2_tried/length_q2_tried
-        sin_q2_tried = across_q2_tried/length_q2_tried
+        cos_q2_tried = along_q2_tried / length_q2_tried
+        sin_q2_tried = across_q2_tried / length_q2_tried
         # in the singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried = elsewhere(
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
@@ -338,22 +390,22 @@ class ArrayPrograms(Programs):
             elsewhere_cos_q2_tried,
             (free_a2, freed, freed_angle),
         )
-        r21_from_q1_tried = goal_r21*cos_q1_tried - goal_r11*sin_q1_tried
-        r22_from_q1_tried = goal_r22*cos_q1_tried - goal_r12*sin_q1_tried
-        r22_from_q123_before_q6_tried = r22_from_q1_tried*cos_q6_tried + r21_from_q1_tried*sin_q6_tried
-        r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried
-        sin_q23_tried = cos_q2_tried*sin_q3_tried + cos_q3_tried*sin_q2_tried
-        cos_q23_tried = cos_q2_tried*cos_q3_tried - sin_q2_tried*sin_q3_tried
-        r31_from_q123_tried = goal_r31*cos_q23_tried + r11_from_q1_tried*sin_q23_tried
-        r12_from_q1_tried = goal_r12*cos_q1_tried + goal_r22*sin_q1_tried
-        r32_from_q123_tried = goal_r32*cos_q23_tried + r12_from_q1_tried*sin_q23_tried
-        r32_from_q123_before_q6_tried = r32_from_q123_tried*cos_q6_tried + r31_from_q123_tried*sin_q6_tried
-        r13_from_q1_tried = goal_r13*cos_q1_tried + goal_r23*sin_q1_tried
-        r13_from_q123_tried = r13_from_q1_tried*cos_q23_tried - goal_r33*sin_q23_tried
-        r23_from_q1_tried = goal_r23*cos_q1_tried - goal_r13*sin_q1_tried
-        r33_from_q123_tried = goal_r33*cos_q23_tried + r13_from_q1_tried*sin_q23_tried
+        r21_from_q1_tried = goal_r21 * cos_q1_tried - goal_r11 * sin_q1_tried
+        r22_from_q1_tried = goal_r22 * cos_q1_tried - goal_r12 * sin_q1_tried
+        r22_from_q123_before_q6_tried = r22_from_q1_tried * cos_q6_tried + r21_from_q1_tried * sin_q6_tried
+        r11_from_q1_tried = goal_r11 * cos_q1_tried + goal_r21 * sin_q1_tried
+        sin_q23_tried = cos_q2_tried * sin_q3_tried + cos_q3_tried * sin_q2_tried
+        cos_q23_tried = cos_q2_tried * cos_q3_tried - sin_q2_tried * sin_q3_tried
+        r31_from_q123_tried = goal_r31 * cos_q23_tried + r11_from_q1_tried * sin_q23_tried
+        r12_from_q1_tried = goal_r12 * cos_q1_tried + goal_r22 * sin_q1_tried
+        r32_from_q123_tried = goal_r32 * cos_q23_tried + r12_from_q1_tried * sin_q23_tried
+        r32_from_q123_before_q6_tried = r32_from_q123_tried * cos_q6_tried + r31_from_q123_tried * sin_q6_tried
+        r13_from_q1_tried = goal_r13 * cos_q1_tried + goal_r23 * sin_q1_tried
+        r13_from_q123_tried = r13_from_q1_tried * cos_q23_tried - goal_r33 * sin_q23_tried
+        r23_from_q1_tried = goal_r23 * cos_q1_tried - goal_r13 * sin_q1_tried
+        r33_from_q123_tried = goal_r33 * cos_q23_tried + r13_from_q1_tried * sin_q23_tried
         r33_from_q1234_tried = (
-            r22_from_q123_before_q6_tried*r33_from_q123_tried - r23_from_q1_tried*r32_from_q123_before_q6_tried
+            r22_from_q123_before_q6_tried * r33_from_q123_tried - r23_from_q1_tried * r32_from_q123_before_q6_tried
         )
         # Newton's method on the closure
         q1, q2, q3, q4, q5, q6, passes = initial(
@@ -369,148 +421,201 @@ class ArrayPrograms(Programs):
             cos_q1 = cos(q1)
             q2_plus_q3 = q2 + q3
             cos_q23 = cos(q2_plus_q3)
-            r11_at_q23 = cos_q1*cos_q23
+            r11_at_q23 = cos_q1 * cos_q23
             sin_q1 = sin(q1)
             sin_q23 = sin(q2_plus_q3)
-            r13_at_q23 = cos_q1*sin_q23
+            r13_at_q23 = cos_q1 * sin_q23
             sin_q4 = sin(q4)
             cos_q4 = cos(q4)
-            r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4
+            r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
             sin_q5 = sin(q5)
             cos_q5 = cos(q5)
-            r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5
-            x_at_q2 = k.a1*cos_q1
+            r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+            x_at_q2 = k.a1 * cos_q1
             sin_q2 = sin(q2)
-            r13_at_q2 = cos_q1*sin_q2
-            x_at_q3 = x_at_q2 + k.a2*r13_at_q2
-            x_at_q4 = x_at_q3 + k.a3*r13_at_q23 + k.d4*r11_at_q23
-            r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
-            x_at_q6 = x_at_q4 + k.j6_offset_x*r11_at_q5
-            x = x_at_q6 + k.d6*r13_at_q5
-            error_1 = (goal_x - x)*k.one_by_machine_scale
-            r21_at_q23 = cos_q23*sin_q1
-            r23_at_q23 = sin_q1*sin_q23
-            r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4
-            r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5
-            y_at_q2 = k.a1*sin_q1
-            r23_at_q2 = sin_q1*sin_q2
-            y_at_q3 = y_at_q2 + k.a2*r23_at_q2
-            y_at_q4 = y_at_q3 + k.a3*r23_at_q23 + k.d4*r21_at_q23
-            r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
-            y_at_q6 = y_at_q4 + k.j6_offset_x*r21_at_q5
-            y = y_at_q6 + k.d6*r23_at_q5
-            error_2 = (goal_y - y)*k.one_by_machine_scale
-            r33_at_q4 = cos_q23*cos_q4
-            r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
+            r13_at_q2 = cos_q1 * sin_q2
+            x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+            x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d4 * r11_at_q23
+            r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+            x_at_q6 = x_at_q4 + k.j6_offset_x * r11_at_q5
+            x = x_at_q6 + k.d6 * r13_at_q5
+            error_1 = (goal_x - x) * k.one_by_machine_scale
+            r21_at_q23 = cos_q23 * sin_q1
+            r23_at_q23 = sin_q1 * sin_q23
+            r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+            r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+            y_at_q2 = k.a1 * sin_q1
+            r23_at_q2 = sin_q1 * sin_q2
+            y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+            y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23
+            r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+            y_at_q6 = y_at_q4 + k.j6_offset_x * r21_at_q5
+            y = y_at_q6 + k.d6 * r23_at_q5
+            error_2 = (goal_y - y) * k.one_by_machine_scale
+            r33_at_q4 = cos_q23 * cos_q4
+            r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
             cos_q2 = cos(q2)
-            z_at_q3 = k.d1 + k.a2*cos_q2
-            z_at_q4 = z_at_q3 + k.a3*cos_q23 - k.d4*sin_q23
-            r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
-            z_at_q6 = z_at_q4 + k.j6_offset_x*r31_at_q5
-            z = z_at_q6 + k.d6*r33_at_q5
-            error_3 = (goal_z - z)*k.one_by_machine_scale
-            r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
+            z_at_q3 = k.d1 + k.a2 * cos_q2
+            z_at_q4 = z_at_q3 + k.a3 * cos_q23 - k.d4 * sin_q23
+            r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+            z_at_q6 = z_at_q4 + k.j6_offset_x * r31_at_q5
+            z = z_at_q6 + k.d6 * r33_at_q5
+            error_3 = (goal_z - z) * k.one_by_machine_scale
+            r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
             sin_q6 = sin(q6)
             cos_q6 = cos(q6)
-            r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
-            r32_at_q4 = cos_q23*sin_q4
-            r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
-            r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
-            r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-            error_4 = (
-                0.5
-                *(
-                    goal_r31*r21_at_q6 + goal_r32*r22_at_q6 + goal_r33*r23_at_q5 - goal_r21*r31_at_q6 - goal_r22*r32_at_q6
-                    - goal_r23*r33_at_q5
-                )
+            r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
+            r32_at_q4 = cos_q23 * sin_q4
+            r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
+            r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
+            r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
+            error_4 = 0.5 * (
+                goal_r31 * r21_at_q6
+                + goal_r32 * r22_at_q6
+                + goal_r33 * r23_at_q5
+                - goal_r21 * r31_at_q6
+                - goal_r22 * r32_at_q6
+                - goal_r23 * r33_at_q5
             )
-            r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
-            r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
-            r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
-            error_5 = (
-                0.5
-                *(
-                    goal_r11*r31_at_q6 + goal_r12*r32_at_q6 + goal_r13*r33_at_q5 - goal_r31*r11_at_q6 - goal_r32*r12_at_q6
-                    - goal_r33*r13_at_q5
-                )
+            r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+            r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
+            r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
+            error_5 = 0.5 * (
+                goal_r11 * r31_at_q6
+                + goal_r12 * r32_at_q6
+                + goal_r13 * r33_at_q5
+                - goal_r31 * r11_at_q6
+                - goal_r32 * r12_at_q6
+                - goal_r33 * r13_at_q5
             )
-            error_6 = (
-                0.5
-                *(
-                    goal_r21*r11_at_q6 + goal_r22*r12_at_q6 + goal_r23*r13_at_q5 - goal_r11*r21_at_q6 - goal_r12*r22_at_q6
-                    - goal_r13*r23_at_q5
-                )
+            error_6 = 0.5 * (
+                goal_r21 * r11_at_q6
+                + goal_r22 * r12_at_q6
+                + goal_r23 * r13_at_q5
+                - goal_r11 * r21_at_q6
+                - goal_r12 * r22_at_q6
+                - goal_r13 * r23_at_q5
             )
             # pose error, in characteristic lengths and radians
             error = sqrt(
-                error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4 + error_5*error_5 + error_6*error_6
+                error_1 * error_1
+                + error_2 * error_2
+                + error_3 * error_3
+                + error_4 * error_4
+                + error_5 * error_5
+                + error_6 * error_6
             )
-            rate_1_1 = -k.one_by_machine_scale*y
-            rate_2_1 = k.one_by_machine_scale*x
+            rate_1_1 = -k.one_by_machine_scale * y
+            rate_2_1 = k.one_by_machine_scale * x
             z_minus_d1 = z - k.d1
-            cos_q1_times_one_by_machine_scale = k.one_by_machine_scale*cos_q1
-            rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale
+            cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+            rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
             z_minus_z_at_q3 = z - z_at_q3
-            rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale
+            rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
             z_minus_z_at_q4 = z - z_at_q4
             y_minus_y_at_q4 = y - y_at_q4
-            rate_1_4 = k.one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23)
-            rate_1_5 = k.one_by_machine_scale*(r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4)
+            rate_1_4 = k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
+            rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4)
             z_minus_z_at_q6 = z - z_at_q6
             y_minus_y_at_q6 = y - y_at_q6
-            rate_1_6 = k.one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6)
+            rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
             product_1_1 = (
-                1e-12 + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4 + rate_1_5*rate_1_5
-                + rate_1_6*rate_1_6
+                1e-12
+                + rate_1_1 * rate_1_1
+                + rate_1_2 * rate_1_2
+                + rate_1_3 * rate_1_3
+                + rate_1_4 * rate_1_4
+                + rate_1_5 * rate_1_5
+                + rate_1_6 * rate_1_6
             )
-            sin_q1_times_one_by_machine_scale = k.one_by_machine_scale*sin_q1
-            rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale
-            rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale
+            sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+            rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+            rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
             x_minus_x_at_q4 = x - x_at_q4
-            rate_2_4 = (-r11_at_q23*z_minus_z_at_q4 - x_minus_x_at_q4*sin_q23)*k.one_by_machine_scale
-            rate_2_5 = (r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4)*k.one_by_machine_scale
+            rate_2_4 = (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * k.one_by_machine_scale
+            rate_2_5 = (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * k.one_by_machine_scale
             x_minus_x_at_q6 = x - x_at_q6
-            rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k.one_by_machine_scale
+            rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
             product_1_2 = (
-                rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4 + rate_1_5*rate_2_5
-                + rate_1_6*rate_2_6
+                rate_1_1 * rate_2_1
+                + rate_1_2 * rate_2_2
+                + rate_1_3 * rate_2_3
+                + rate_1_4 * rate_2_4
+                + rate_1_5 * rate_2_5
+                + rate_1_6 * rate_2_6
             )
-            rate_3_2 = k.one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1)
-            rate_3_3 = k.one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1)
-            rate_3_4 = k.one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4)
-            rate_3_5 = k.one_by_machine_scale*(r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4)
-            rate_3_6 = k.one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6)
+            rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+            rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+            rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4)
+            rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
             product_1_3 = (
-                rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5 + rate_1_6*rate_3_6
+                rate_1_2 * rate_3_2
+                + rate_1_3 * rate_3_3
+                + rate_1_4 * rate_3_4
+                + rate_1_5 * rate_3_5
+                + rate_1_6 * rate_3_6
             )
             rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
-            product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 - rate_1_2_plus_rate_1_3*sin_q1
-            product_1_5 = rate_1_2_plus_rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6
-            product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23
+            product_1_4 = (
+                r11_at_q23 * rate_1_4 + r12_at_q4 * rate_1_5 + r13_at_q5 * rate_1_6 - rate_1_2_plus_rate_1_3 * sin_q1
+            )
+            product_1_5 = (
+                rate_1_2_plus_rate_1_3 * cos_q1 + r21_at_q23 * rate_1_4 + r22_at_q4 * rate_1_5 + r23_at_q5 * rate_1_6
+            )
+            product_1_6 = rate_1_1 + r32_at_q4 * rate_1_5 + r33_at_q5 * rate_1_6 - rate_1_4 * sin_q23
             product_2_2 = (
-                1e-12 + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4 + rate_2_5*rate_2_5
-                + rate_2_6*rate_2_6
+                1e-12
+                + rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
+                + rate_2_6 * rate_2_6
             )
             product_2_3 = (
-                rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5 + rate_2_6*rate_3_6
+                rate_2_2 * rate_3_2
+                + rate_2_3 * rate_3_3
+                + rate_2_4 * rate_3_4
+                + rate_2_5 * rate_3_5
+                + rate_2_6 * rate_3_6
             )
             rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
-            product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 - rate_2_2_plus_rate_2_3*sin_q1
-            product_2_5 = rate_2_2_plus_rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6
-            product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23
+            product_2_4 = (
+                r11_at_q23 * rate_2_4 + r12_at_q4 * rate_2_5 + r13_at_q5 * rate_2_6 - rate_2_2_plus_rate_2_3 * sin_q1
+            )
+            product_2_5 = (
+                rate_2_2_plus_rate_2_3 * cos_q1 + r21_at_q23 * rate_2_4 + r22_at_q4 * rate_2_5 + r23_at_q5 * rate_2_6
+            )
+            product_2_6 = rate_2_1 + r32_at_q4 * rate_2_5 + r33_at_q5 * rate_2_6 - rate_2_4 * sin_q23
             product_3_3 = (
-                1e-12 + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5 + rate_3_6*rate_3_6
+                1e-12
+                + rate_3_2 * rate_3_2
+                + rate_3_3 * rate_3_3
+                + rate_3_4 * rate_3_4
+                + rate_3_5 * rate_3_5
+                + rate_3_6 * rate_3_6
             )
             rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
-            product_3_4 = r11_at_q23*rate_3_4 + r12_at_q4*rate_3_5 + r13_at_q5*rate_3_6 - rate_3_2_plus_rate_3_3*sin_q1
-            product_3_5 = rate_3_2_plus_rate_3_3*cos_q1 + r21_at_q23*rate_3_4 + r22_at_q4*rate_3_5 + r23_at_q5*rate_3_6
-            product_3_6 = r32_at_q4*rate_3_5 + r33_at_q5*rate_3_6 - rate_3_4*sin_q23
-            product_4_4 = 1e-12 + r11_at_q23*r11_at_q23 + r12_at_q4*r12_at_q4 + r13_at_q5*r13_at_q5 + 2.0*sin_q1*sin_q1
-            product_4_5 = r11_at_q23*r21_at_q23 + r12_at_q4*r22_at_q4 + r13_at_q5*r23_at_q5 - 2.0*cos_q1*sin_q1
-            product_4_6 = r12_at_q4*r32_at_q4 + r13_at_q5*r33_at_q5 - r11_at_q23*sin_q23
-            product_5_5 = 1e-12 + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4 + r23_at_q5*r23_at_q5
-            product_5_6 = r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5 - r21_at_q23*sin_q23
-            product_6_6 = 1.000000000001 + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23
+            product_3_4 = (
+                r11_at_q23 * rate_3_4 + r12_at_q4 * rate_3_5 + r13_at_q5 * rate_3_6 - rate_3_2_plus_rate_3_3 * sin_q1
+            )
+            product_3_5 = (
+                rate_3_2_plus_rate_3_3 * cos_q1 + r21_at_q23 * rate_3_4 + r22_at_q4 * rate_3_5 + r23_at_q5 * rate_3_6
+            )
+            product_3_6 = r32_at_q4 * rate_3_5 + r33_at_q5 * rate_3_6 - rate_3_4 * sin_q23
+            product_4_4 = (
+                1e-12 + r11_at_q23 * r11_at_q23 + r12_at_q4 * r12_at_q4 + r13_at_q5 * r13_at_q5 + 2.0 * sin_q1 * sin_q1
+            )
+            product_4_5 = (
+                r11_at_q23 * r21_at_q23 + r12_at_q4 * r22_at_q4 + r13_at_q5 * r23_at_q5 - 2.0 * cos_q1 * sin_q1
+            )
+            product_4_6 = r12_at_q4 * r32_at_q4 + r13_at_q5 * r33_at_q5 - r11_at_q23 * sin_q23
+            product_5_5 = (
+                1e-12 + 2.0 * cos_q1 * cos_q1 + r21_at_q23 * r21_at_q23 + r22_at_q4 * r22_at_q4 + r23_at_q5 * r23_at_q5
+            )
+            product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
+            product_6_6 = 1.000000000001 + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
             # damped least squares: the shortest step that cancels the error
             _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
                 (
@@ -523,24 +628,41 @@ class ArrayPrograms(Programs):
                 ),
                 ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
             )
-            step_q1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1
-            part_of_step_q2 = multiplier_5*cos_q1 - multiplier_4*sin_q1
-            step_q2 = part_of_step_q2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2
-            step_q3 = part_of_step_q2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3
+            step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            part_of_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
+            step_q2 = part_of_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_q3 = part_of_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_q4 = (
-                multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4 + multiplier_4*r11_at_q23
-                + multiplier_5*r21_at_q23 - multiplier_6*sin_q23
+                multiplier_1 * rate_1_4
+                + multiplier_2 * rate_2_4
+                + multiplier_3 * rate_3_4
+                + multiplier_4 * r11_at_q23
+                + multiplier_5 * r21_at_q23
+                - multiplier_6 * sin_q23
             )
             step_q5 = (
-                multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5 + multiplier_4*r12_at_q4
-                + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4
+                multiplier_1 * rate_1_5
+                + multiplier_2 * rate_2_5
+                + multiplier_3 * rate_3_5
+                + multiplier_4 * r12_at_q4
+                + multiplier_5 * r22_at_q4
+                + multiplier_6 * r32_at_q4
             )
             step_q6 = (
-                multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6 + multiplier_4*r13_at_q5
-                + multiplier_5*r23_at_q5 + multiplier_6*r33_at_q5
+                multiplier_1 * rate_1_6
+                + multiplier_2 * rate_2_6
+                + multiplier_3 * rate_3_6
+                + multiplier_4 * r13_at_q5
+                + multiplier_5 * r23_at_q5
+                + multiplier_6 * r33_at_q5
             )
             size = (
-                step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4 + step_q5*step_q5 + step_q6*step_q6
+                step_q1 * step_q1
+                + step_q2 * step_q2
+                + step_q3 * step_q3
+                + step_q4 * step_q4
+                + step_q5 * step_q5
+                + step_q6 * step_q6
             )
             taken = size <= error  # whether the error becomes smaller
             done = (opposite(taken)) | (error <= 1e-14) | (passes >= 3)
@@ -573,18 +695,39 @@ class ArrayPrograms(Programs):
             (),
         )
         fits = (
-            (error <= 1e-10) & (select(k.size_of_j6_offset_x > 0.0, sin_q4, cos_q5)*wanted_wrist >= -1e-6)
-            & (-(wanted_crossing*wanted_elbow*wanted_shoulder)*determinant*k.part_of_fits >= -1e-6)
-            & (wanted_elbow*(k.a3*sin(q3) + cos(q3)*k.d4)*k.one_by_machine_scale >= -1e-6)
-            & (wanted_shoulder*(k.a1 + k.a2*sin_q2 + k.a3*sin_q23 + k.d4*cos_q23)*k.one_by_machine_scale >= -1e-6)
+            (error <= 1e-10)
+            & (select(k.size_of_j6_offset_x > 0.0, sin_q4, cos_q5) * wanted_wrist >= -1e-6)
+            & (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * k.part_of_fits >= -1e-6)
+            & (wanted_elbow * (k.a3 * sin(q3) + cos(q3) * k.d4) * k.one_by_machine_scale >= -1e-6)
+            & (
+                wanted_shoulder * (k.a1 + k.a2 * sin_q2 + k.a3 * sin_q23 + k.d4 * cos_q23) * k.one_by_machine_scale
+                >= -1e-6
+            )
         )
         return (fits, q1, q2, q3, q4, q5, q6)
 
     def find_root(self, given: Values, status: Codes) -> Values:
         """The joints at the root that is nearest to the start; zeros where the machine needs no scan."""
         (
-            free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
-            goal_r33, goal_x, goal_y, goal_z, looked_for, start, wanted_crossing, wanted_elbow, wanted_shoulder,
+            free_a1,
+            free_a2,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            looked_for,
+            start,
+            wanted_crossing,
+            wanted_elbow,
+            wanted_shoulder,
             wanted_wrist,
         ) = given
         # root scan along A6
@@ -595,13 +738,50 @@ class ArrayPrograms(Programs):
             looked_for,
             status,
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_elbow, wanted_shoulder,
+                free_a1,
+                free_a2,
+                "freed",
+                "freed_angle",
+                goal_r11,
+                goal_r12,
+                goal_r13,
+                goal_r21,
+                goal_r22,
+                goal_r23,
+                goal_r31,
+                goal_r32,
+                goal_r33,
+                goal_x,
+                goal_y,
+                goal_z,
+                "side",
+                "tried",
+                wanted_elbow,
+                wanted_shoulder,
             ),
             (
-                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
-                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_crossing, wanted_elbow,
-                wanted_shoulder, wanted_wrist,
+                free_a1,
+                free_a2,
+                "freed",
+                "freed_angle",
+                goal_r11,
+                goal_r12,
+                goal_r13,
+                goal_r21,
+                goal_r22,
+                goal_r23,
+                goal_r31,
+                goal_r32,
+                goal_r33,
+                goal_x,
+                goal_y,
+                goal_z,
+                "side",
+                "tried",
+                wanted_crossing,
+                wanted_elbow,
+                wanted_shoulder,
+                wanted_wrist,
             ),
             7,
         )
@@ -614,64 +794,57 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9) & (absolute(axis_a5) <= 1e9) & (absolute(axis_a6) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        q1 = DEGREE*(axis_a1 - k.offset_a1)
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
+        q1 = DEGREE * (axis_a1 - k.offset_a1)
         cos_q1 = cos(q1)
-        q2 = DEGREE*(axis_a2 - k.offset_a2)
-        q3 = DEGREE*(axis_a3 - k.offset_a3)
+        q2 = DEGREE * (axis_a2 - k.offset_a2)
+        q3 = DEGREE * (axis_a3 - k.offset_a3)
         q2_plus_q3 = q2 + q3
         cos_q23 = cos(q2_plus_q3)
-        r11_at_q23 = cos_q1*cos_q23
+        r11_at_q23 = cos_q1 * cos_q23
         sin_q1 = sin(q1)
         sin_q23 = sin(q2_plus_q3)
-        r13_at_q23 = cos_q1*sin_q23
-        q4 = DEGREE*(axis_a4 - k.offset_a4)
+        r13_at_q23 = cos_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - k.offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4
-        q5 = DEGREE*(axis_a5 - k.offset_a5)
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        q5 = DEGREE * (axis_a5 - k.offset_a5)
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
-        r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5
-        x_at_q2 = k.a1*cos_q1
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        x_at_q2 = k.a1 * cos_q1
         sin_q2 = sin(q2)
-        r13_at_q2 = cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + k.a2*r13_at_q2
-        x_at_q4 = x_at_q3 + k.a3*r13_at_q23 + k.d4*r11_at_q23
-        r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
-        x_at_q6 = x_at_q4 + k.j6_offset_x*r11_at_q5
-        d6_times_r13_at_q5 = k.d6*r13_at_q5
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q4 + k.j6_offset_x * r11_at_q5
+        d6_times_r13_at_q5 = k.d6 * r13_at_q5
         x = d6_times_r13_at_q5 + x_at_q6
-        r21_at_q23 = cos_q23*sin_q1
-        r23_at_q23 = sin_q1*sin_q23
-        r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4
-        r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5
-        y_at_q2 = k.a1*sin_q1
-        r23_at_q2 = sin_q1*sin_q2
-        y_at_q3 = y_at_q2 + k.a2*r23_at_q2
-        y_at_q4 = y_at_q3 + k.a3*r23_at_q23 + k.d4*r21_at_q23
-        r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
-        y_at_q6 = y_at_q4 + k.j6_offset_x*r21_at_q5
-        d6_times_r23_at_q5 = k.d6*r23_at_q5
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        y_at_q2 = k.a1 * sin_q1
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q4 + k.j6_offset_x * r21_at_q5
+        d6_times_r23_at_q5 = k.d6 * r23_at_q5
         y = d6_times_r23_at_q5 + y_at_q6
-        r33_at_q4 = cos_q23*cos_q4
-        r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
-        r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
-        r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
-        r32_at_q4 = cos_q23*sin_q4
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
         cos_q2 = cos(q2)
-        z_at_q3 = k.d1 + k.a2*cos_q2
-        z_at_q4 = z_at_q3 + k.a3*cos_q23 - k.d4*sin_q23
-        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
-        z_at_q6 = z_at_q4 + k.j6_offset_x*r31_at_q5
-        z = z_at_q6 + k.d6*r33_at_q5
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23 - k.d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q4 + k.j6_offset_x * r31_at_q5
+        z = z_at_q6 + k.d6 * r33_at_q5
         z_minus_d1 = z - k.d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
@@ -680,34 +853,34 @@ class ArrayPrograms(Programs):
         y_minus_y_at_q6 = y - y_at_q6
         x_minus_x_at_q4 = x - x_at_q4
         x_minus_x_at_q6 = x - x_at_q6
-        cos_q1_times_one_by_machine_scale = k.one_by_machine_scale*cos_q1
-        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale*sin_q1
+        cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
         # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
                 (
-                    -k.one_by_machine_scale*y,
-                    z_minus_d1*cos_q1_times_one_by_machine_scale,
-                    z_minus_z_at_q3*cos_q1_times_one_by_machine_scale,
-                    k.one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23),
-                    k.one_by_machine_scale*(r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4),
-                    k.one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6),
+                    -k.one_by_machine_scale * y,
+                    z_minus_d1 * cos_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale,
+                    k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23),
+                    k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4),
+                    k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6),
                 ),
                 (
-                    k.one_by_machine_scale*x,
-                    z_minus_d1*sin_q1_times_one_by_machine_scale,
-                    z_minus_z_at_q3*sin_q1_times_one_by_machine_scale,
-                    (-r11_at_q23*z_minus_z_at_q4 - x_minus_x_at_q4*sin_q23)*k.one_by_machine_scale,
-                    (r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4)*k.one_by_machine_scale,
-                    (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k.one_by_machine_scale,
+                    k.one_by_machine_scale * x,
+                    z_minus_d1 * sin_q1_times_one_by_machine_scale,
+                    z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
+                    (-r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23) * k.one_by_machine_scale,
+                    (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * k.one_by_machine_scale,
+                    (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale,
                 ),
                 (
                     0.0,
-                    k.one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1),
-                    k.one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1),
-                    k.one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4),
-                    k.one_by_machine_scale*(r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4),
-                    k.one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6),
+                    k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1),
+                    k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1),
+                    k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4),
+                    k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4),
+                    k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6),
                 ),
                 (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
                 (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
@@ -715,54 +888,49 @@ class ArrayPrograms(Programs):
             ),
             (),
         )
-        q6 = DEGREE*(axis_a6 - k.offset_a6)
+        q6 = DEGREE * (axis_a6 - k.offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
-        r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
-        r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
-        r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
-        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
-        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
+        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
+        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
+        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
+        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
+        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
+        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
         wrist_x_closed = x - d6_times_r13_at_q5  # wrist centre: the point in which the last axes intersect
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
-        margin_elbow_closed = k.a3_by_effective_q3_tried*sin_q3_closed + k.d4_by_effective_q3_tried*cos_q3_closed
+        margin_elbow_closed = k.a3_by_effective_q3_tried * sin_q3_closed + k.d4_by_effective_q3_tried * cos_q3_closed
         branch_shoulder: Real
         branch_wrist: Real
         branch_crossing: Real
         if k.searched:
             # wrist centre: the point in which the last axes intersect
-            wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*k.j6_offset_x
-            wrist_y_tried = wrist_y_closed + (r22_at_q6*sin_q6 - r21_at_q6*cos_q6)*k.j6_offset_x
-            margin_shoulder_tried = k.one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)
+            wrist_x_tried = wrist_x_closed + (r12_at_q6 * sin_q6 - r11_at_q6 * cos_q6) * k.j6_offset_x
+            wrist_y_tried = wrist_y_closed + (r22_at_q6 * sin_q6 - r21_at_q6 * cos_q6) * k.j6_offset_x
+            margin_shoulder_tried = k.one_by_machine_scale * (wrist_x_tried * cos_q1 + wrist_y_tried * sin_q1)
             branch_shoulder = margin_shoulder_tried
-            branch_wrist = select(k.size_of_j6_offset_x > 0.0, sin_q4, cos_q5)*k.one_by_machine_scale
+            branch_wrist = select(k.size_of_j6_offset_x > 0.0, sin_q4, cos_q5) * k.one_by_machine_scale
             branch_crossing = (
-                -select(margin_elbow_closed >= 0.0, 1.0, -1.0)*select(margin_shoulder_tried >= 0.0, 1.0, -1.0)*determinant
-                *k.part_of_fits
+                -select(margin_elbow_closed >= 0.0, 1.0, -1.0)
+                * select(margin_shoulder_tried >= 0.0, 1.0, -1.0)
+                * determinant
+                * k.part_of_fits
             )
         else:
-            margin_shoulder_closed = k.one_by_machine_scale*(wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)
+            margin_shoulder_closed = k.one_by_machine_scale * (wrist_x_closed * cos_q1 + wrist_y_closed * sin_q1)
             branch_shoulder = margin_shoulder_closed
             branch_wrist = cos_q5
             branch_crossing = 1.0
         return (
-            (
-                (x, y, z),
-                (
-                    (r11_at_q6, r12_at_q6, r13_at_q5),
-                    (r21_at_q6, r22_at_q6, r23_at_q5),
-                    (r31_at_q6, r32_at_q6, r33_at_q5),
-                ),
-                (branch_shoulder, margin_elbow_closed, branch_wrist, branch_crossing),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_q6, r12_at_q6, r13_at_q5), (r21_at_q6, r22_at_q6, r23_at_q5), (r31_at_q6, r32_at_q6, r33_at_q5)),
+            (branch_shoulder, margin_elbow_closed, branch_wrist, branch_crossing),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -773,43 +941,37 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        wrist_x_closed = x - k.d6*r13  # wrist centre: the point in which the last axes intersect
-        wrist_y_closed = y - k.d6*r23
+        require(status, reasonable(ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, x, y, z), Status.BAD_INPUT)
+        wrist_x_closed = x - k.d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_y_closed = y - k.d6 * r23
         # distance of the point from the axis of q1
-        distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
+        distance_q1_closed = sqrt(wrist_x_closed * wrist_x_closed + wrist_y_closed * wrist_y_closed)
         # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_closed = sigma_shoulder*distance_q1_closed
-        wrist_x_from_q1_closed = ahead_q1_closed - k.a1  # coordinate of the point that the remaining links must reach
-        wrist_z_closed = z - k.d6*r33
-        wrist_z_from_q1_closed = wrist_z_closed - k.d1  # coordinate of the point that the remaining links must reach
+        ahead_q1_closed = sigma_shoulder * distance_q1_closed
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1_closed = ahead_q1_closed - k.a1
+        wrist_z_closed = z - k.d6 * r33
+        # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1_closed = wrist_z_closed - k.d1
         # distance that the remaining links must span
         reach_closed = sqrt(
-            wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
+            wrist_x_from_q1_closed * wrist_x_from_q1_closed + wrist_z_from_q1_closed * wrist_z_from_q1_closed
         )
         # law of cosines for q3: x_from_q1² + z_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3_closed = (
-            (k.a2_plus_effective_q3_tried + reach_closed)*(k.a2_plus_effective_q3_tried - reach_closed)
+        one_less_cos_q3_closed = (k.a2_plus_effective_q3_tried + reach_closed) * (
+            k.a2_plus_effective_q3_tried - reach_closed
         )
         # 1 + cosine, times the scale
-        one_plus_cos_q3_closed = (
-            (reach_closed - k.a2_minus_effective_q3_tried)*(k.a2_minus_effective_q3_tried + reach_closed)
+        one_plus_cos_q3_closed = (reach_closed - k.a2_minus_effective_q3_tried) * (
+            k.a2_minus_effective_q3_tried + reach_closed
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
         divisor_of_cos_q3_closed = select(sum_of_cos_q3_closed > 0.0, sum_of_cos_q3_closed, 1.0)
-        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
-        free_a1 = (ref_a1 - k.offset_a1)*DEGREE
-        free_a2 = (ref_a2 - k.offset_a2)*DEGREE
-        free_a6 = (ref_a6 - k.offset_a6)*DEGREE
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
+        free_a1 = (ref_a1 - k.offset_a1) * DEGREE
+        free_a2 = (ref_a2 - k.offset_a2) * DEGREE
+        free_a6 = (ref_a6 - k.offset_a6) * DEGREE
         # q3: out of reach
         require(status, k.searched | (absolute(cos_swing_q3_closed) <= 1.0000000000005), Status.UNREACHABLE)
         # without the offset there is no second crossing
@@ -817,8 +979,26 @@ class ArrayPrograms(Programs):
         # root scan along A6
         found = self.find_root(
             (
-                free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k.searched, free_a6,
-                sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist,
+                free_a1,
+                free_a2,
+                r11,
+                r12,
+                r13,
+                r21,
+                r22,
+                r23,
+                r31,
+                r32,
+                r33,
+                x,
+                y,
+                z,
+                k.searched,
+                free_a6,
+                sigma_crossing,
+                sigma_elbow,
+                sigma_shoulder,
+                sigma_wrist,
             ),
             status,
         )
@@ -843,10 +1023,10 @@ class ArrayPrograms(Programs):
                 sin_q1_closed = sin(free_a1)
                 return (cos_q1_closed, sin_q1_closed)
 
-            along_q1_closed = sigma_shoulder*wrist_x_closed  # rotation by q1 that points the arm at the point
-            cos_q1_closed = along_q1_closed/distance_q1_closed
-            across_q1_closed = sigma_shoulder*wrist_y_closed
-            sin_q1_closed = across_q1_closed/distance_q1_closed
+            along_q1_closed = sigma_shoulder * wrist_x_closed  # rotation by q1 that points the arm at the point
+            cos_q1_closed = along_q1_closed / distance_q1_closed
+            across_q1_closed = sigma_shoulder * wrist_y_closed
+            sin_q1_closed = across_q1_closed / distance_q1_closed
             # in the singularity: the angle of the reference
             cos_q1_closed, sin_q1_closed = elsewhere(
                 distance_q1_closed > k.machine_scale_times_free_angle,
@@ -855,23 +1035,28 @@ class ArrayPrograms(Programs):
                 (free_a1,),
             )
             q1 = atan2(sin_q1_closed, cos_q1_closed)
-            sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # sine squared, times the squared scale
-            sin_swing_q3_closed = 2.0*root(sine_square_q3_closed)*sigma_elbow/divisor_of_cos_q3_closed
+            # sine squared, times the squared scale
+            sine_square_q3_closed = one_less_cos_q3_closed * one_plus_cos_q3_closed
+            sin_swing_q3_closed = 2.0 * root(sine_square_q3_closed) * sigma_elbow / divisor_of_cos_q3_closed
 
             def elsewhere_cos_q2_closed(free_a2: Real) -> Reals:
                 cos_q2_closed = cos(free_a2)
                 sin_q2_closed = sin(free_a2)
                 return (cos_q2_closed, sin_q2_closed)
 
-            arm_along_q2_closed = k.effective_q3_tried*sin_swing_q3_closed
-            arm_across_q2_closed = k.a2 + k.effective_q3_tried*cos_swing_q3_closed
+            arm_along_q2_closed = k.effective_q3_tried * sin_swing_q3_closed
+            arm_across_q2_closed = k.a2 + k.effective_q3_tried * cos_swing_q3_closed
             # rotation by q2 that takes the arm to the point that it must reach
-            along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
-            across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
-            part_of_length_q2_closed = across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed
+            along_q2_closed = (
+                arm_across_q2_closed * wrist_z_from_q1_closed + arm_along_q2_closed * wrist_x_from_q1_closed
+            )
+            across_q2_closed = (
+                arm_across_q2_closed * wrist_x_from_q1_closed - arm_along_q2_closed * wrist_z_from_q1_closed
+            )
+            part_of_length_q2_closed = across_q2_closed * across_q2_closed + along_q2_closed * along_q2_closed
             length_q2_closed = select(part_of_length_q2_closed > 0.0, root(part_of_length_q2_closed), 1.0)
-            cos_q2_closed = along_q2_closed/length_q2_closed
-            sin_q2_closed = across_q2_closed/length_q2_closed
+            cos_q2_closed = along_q2_closed / length_q2_closed
+            sin_q2_closed = across_q2_closed / length_q2_closed
             # in the singularity: the angle of the reference
             cos_q2_closed, sin_q2_closed = elsewhere(
                 reach_closed > k.machine_scale_times_free_angle,
@@ -882,28 +1067,30 @@ class ArrayPrograms(Programs):
             q2 = atan2(sin_q2_closed, cos_q2_closed)
             # addition theorem: plus the angle of the direction from which it is measured
             cos_q3_closed = (
-                k.a3_by_effective_q3_tried*cos_swing_q3_closed + k.d4_by_effective_q3_tried*sin_swing_q3_closed
+                k.a3_by_effective_q3_tried * cos_swing_q3_closed + k.d4_by_effective_q3_tried * sin_swing_q3_closed
             )
             sin_q3_closed = (
-                k.a3_by_effective_q3_tried*sin_swing_q3_closed - k.d4_by_effective_q3_tried*cos_swing_q3_closed
+                k.a3_by_effective_q3_tried * sin_swing_q3_closed - k.d4_by_effective_q3_tried * cos_swing_q3_closed
             )
             q3 = atan2(sin_q3_closed, cos_q3_closed)
-            r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
-            sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
-            cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
-            r33_from_q123_closed = r33*cos_q23_closed + r13_from_q1_closed*sin_q23_closed
-            r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
+            r13_from_q1_closed = r13 * cos_q1_closed + r23 * sin_q1_closed
+            sin_q23_closed = cos_q2_closed * sin_q3_closed + cos_q3_closed * sin_q2_closed
+            cos_q23_closed = cos_q2_closed * cos_q3_closed - sin_q2_closed * sin_q3_closed
+            r33_from_q123_closed = r33 * cos_q23_closed + r13_from_q1_closed * sin_q23_closed
+            r23_from_q1_closed = r23 * cos_q1_closed - r13 * sin_q1_closed
             # polar coordinates: the radius at angle q4
-            radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
+            radius_q4_closed = sqrt(
+                r23_from_q1_closed * r23_from_q1_closed + r33_from_q123_closed * r33_from_q123_closed
+            )
 
             def elsewhere_direction_x_q4_closed(ref_a4: Real) -> Reals:
-                free_a4 = (ref_a4 - k.offset_a4)*DEGREE
+                free_a4 = (ref_a4 - k.offset_a4) * DEGREE
                 direction_x_q4_closed = cos(free_a4)
                 direction_y_q4_closed = sin(free_a4)
                 return (direction_x_q4_closed, direction_y_q4_closed)
 
-            direction_x_q4_closed = sigma_wrist*r33_from_q123_closed
-            direction_y_q4_closed = -sigma_wrist*r23_from_q1_closed
+            direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
+            direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed
             # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the reference
             direction_x_q4_closed, direction_y_q4_closed = elsewhere(
                 radius_q4_closed > 1e-11,
@@ -912,40 +1099,40 @@ class ArrayPrograms(Programs):
                 (ref_a4,),
             )
             q4 = atan2(direction_y_q4_closed, direction_x_q4_closed)
-            r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
-            q4_radius_of_q5_closed = sigma_wrist*radius_q4_closed
+            r13_from_q123_closed = r13_from_q1_closed * cos_q23_closed - r33 * sin_q23_closed
+            q4_radius_of_q5_closed = sigma_wrist * radius_q4_closed
             q5 = atan2(r13_from_q123_closed, q4_radius_of_q5_closed)
-            r21_from_q1_closed = r21*cos_q1_closed - r11*sin_q1_closed
-            r11_from_q1_closed = r11*cos_q1_closed + r21*sin_q1_closed
-            r31_from_q123_closed = r31*cos_q23_closed + r11_from_q1_closed*sin_q23_closed
+            r21_from_q1_closed = r21 * cos_q1_closed - r11 * sin_q1_closed
+            r11_from_q1_closed = r11 * cos_q1_closed + r21 * sin_q1_closed
+            r31_from_q123_closed = r31 * cos_q23_closed + r11_from_q1_closed * sin_q23_closed
             scaled_r21_from_q1234_closed = (
-                direction_x_q4_closed*r21_from_q1_closed + direction_y_q4_closed*r31_from_q123_closed
+                direction_x_q4_closed * r21_from_q1_closed + direction_y_q4_closed * r31_from_q123_closed
             )
-            r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
-            r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
-            r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
+            r22_from_q1_closed = r22 * cos_q1_closed - r12 * sin_q1_closed
+            r12_from_q1_closed = r12 * cos_q1_closed + r22 * sin_q1_closed
+            r32_from_q123_closed = r32 * cos_q23_closed + r12_from_q1_closed * sin_q23_closed
             scaled_r22_from_q1234_closed = (
-                direction_x_q4_closed*r22_from_q1_closed + direction_y_q4_closed*r32_from_q123_closed
+                direction_x_q4_closed * r22_from_q1_closed + direction_y_q4_closed * r32_from_q123_closed
             )
             q6 = atan2(scaled_r21_from_q1234_closed, scaled_r22_from_q1234_closed)
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(k.offset_a1 + q1/DEGREE, near_a1)  # A1: whole turns added
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        axis_a1 = nearest_period(k.offset_a1 + q1 / DEGREE, near_a1)  # A1: whole turns added
         open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(k.offset_a2 + q2/DEGREE, near_a2)  # A2: whole turns added
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        axis_a2 = nearest_period(k.offset_a2 + q2 / DEGREE, near_a2)  # A2: whole turns added
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(k.offset_a3 + q3/DEGREE, near_a3)  # A3: whole turns added
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        axis_a3 = nearest_period(k.offset_a3 + q3 / DEGREE, near_a3)  # A3: whole turns added
         open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
-        axis_a4 = nearest_period(k.offset_a4 + q4/DEGREE, near_a4)  # A4: whole turns added
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        axis_a4 = nearest_period(k.offset_a4 + q4 / DEGREE, near_a4)  # A4: whole turns added
         open_a5 = select(k.single_a5, k.mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
-        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        axis_a5 = nearest_period(k.offset_a5 + q5/DEGREE, near_a5)  # A5: whole turns added
+        near_a5 = select(turn_a5 != 0, 360.0 * select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
+        axis_a5 = nearest_period(k.offset_a5 + q5 / DEGREE, near_a5)  # A5: whole turns added
         open_a6 = select(k.single_a6, k.mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
-        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
-        axis_a6 = nearest_period(k.offset_a6 + q6/DEGREE, near_a6)  # A6: whole turns added
+        near_a6 = select(turn_a6 != 0, 360.0 * select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
+        axis_a6 = nearest_period(k.offset_a6 + q6 / DEGREE, near_a6)  # A6: whole turns added
         # q6: the search along it finds no root of this branch
         require(status, found_ | (opposite(k.searched)), Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status

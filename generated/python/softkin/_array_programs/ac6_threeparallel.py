@@ -16,6 +16,7 @@ from softkin._array import (
     nearest_on_arc,
     nearest_period,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -32,9 +33,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -42,89 +41,75 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9) & (absolute(axis_a5) <= 1e9) & (absolute(axis_a6) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        q5 = DEGREE*(axis_a5 - k.offset_a5)
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
+        q5 = DEGREE * (axis_a5 - k.offset_a5)
         sin_q5 = sin(q5)
-        q1 = DEGREE*(axis_a1 - k.offset_a1)
+        q1 = DEGREE * (axis_a1 - k.offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
-        q4 = DEGREE*(axis_a4 - k.offset_a4)
-        q2 = DEGREE*(axis_a2 - k.offset_a2)
-        q3 = DEGREE*(axis_a3 - k.offset_a3)
+        q4 = DEGREE * (axis_a4 - k.offset_a4)
+        q2 = DEGREE * (axis_a2 - k.offset_a2)
+        q3 = DEGREE * (axis_a3 - k.offset_a3)
         q2_plus_q3 = q2 + q3
         q2_plus_q3_plus_q4 = q2_plus_q3 + q4
         cos_q234 = cos(q2_plus_q3_plus_q4)
-        r11_at_q234 = cos_q1*cos_q234
+        r11_at_q234 = cos_q1 * cos_q234
         cos_q5 = cos(q5)
-        r12_at_q5 = cos_q5*sin_q1 - r11_at_q234*sin_q5
+        r12_at_q5 = cos_q5 * sin_q1 - r11_at_q234 * sin_q5
         sin_q234 = sin(q2_plus_q3_plus_q4)
-        r12_at_q234 = -cos_q1*sin_q234
+        r12_at_q234 = -cos_q1 * sin_q234
         cos_q2 = cos(q2)
-        r11_at_q2 = cos_q1*cos_q2
-        x_at_q3 = k.a2*r11_at_q2
+        r11_at_q2 = cos_q1 * cos_q2
+        x_at_q3 = k.a2 * r11_at_q2
         cos_q23 = cos(q2_plus_q3)
-        r11_at_q23 = cos_q1*cos_q23
-        x_at_q4 = x_at_q3 + k.a3*r11_at_q23
-        x_at_q5 = x_at_q4 + k.d4*sin_q1
-        x_at_q6 = x_at_q5 - k.d5*r12_at_q234
-        d6_times_r12_at_q5 = k.d6*r12_at_q5
+        r11_at_q23 = cos_q1 * cos_q23
+        x_at_q4 = x_at_q3 + k.a3 * r11_at_q23
+        x_at_q5 = x_at_q4 + k.d4 * sin_q1
+        x_at_q6 = x_at_q5 - k.d5 * r12_at_q234
+        d6_times_r12_at_q5 = k.d6 * r12_at_q5
         x = d6_times_r12_at_q5 + x_at_q6
-        r21_at_q234 = cos_q234*sin_q1
-        r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5
-        r22_at_q234 = -sin_q1*sin_q234
-        r21_at_q2 = cos_q2*sin_q1
-        y_at_q3 = k.a2*r21_at_q2
-        r21_at_q23 = cos_q23*sin_q1
-        y_at_q4 = y_at_q3 + k.a3*r21_at_q23
-        y_at_q5 = y_at_q4 - k.d4*cos_q1
-        y_at_q6 = y_at_q5 - k.d5*r22_at_q234
-        d6_times_r22_at_q5 = k.d6*r22_at_q5
+        r21_at_q234 = cos_q234 * sin_q1
+        r22_at_q5 = -cos_q1 * cos_q5 - r21_at_q234 * sin_q5
+        r22_at_q234 = -sin_q1 * sin_q234
+        r21_at_q2 = cos_q2 * sin_q1
+        y_at_q3 = k.a2 * r21_at_q2
+        r21_at_q23 = cos_q23 * sin_q1
+        y_at_q4 = y_at_q3 + k.a3 * r21_at_q23
+        y_at_q5 = y_at_q4 - k.d4 * cos_q1
+        y_at_q6 = y_at_q5 - k.d5 * r22_at_q234
+        d6_times_r22_at_q5 = k.d6 * r22_at_q5
         y = d6_times_r22_at_q5 + y_at_q6
-        r32_at_q5 = -sin_q234*sin_q5
+        r32_at_q5 = -sin_q234 * sin_q5
         sin_q2 = sin(q2)
-        z_at_q3 = k.d1 + k.a2*sin_q2
+        z_at_q3 = k.d1 + k.a2 * sin_q2
         sin_q23 = sin(q2_plus_q3)
-        z_at_q4 = z_at_q3 + k.a3*sin_q23
-        z_at_q6 = z_at_q4 - k.d5*cos_q234
-        z = z_at_q6 + k.d6*r32_at_q5
-        r11_at_q5 = r11_at_q234*cos_q5 + sin_q1*sin_q5
-        q6 = DEGREE*(axis_a6 - k.offset_a6)
+        z_at_q4 = z_at_q3 + k.a3 * sin_q23
+        z_at_q6 = z_at_q4 - k.d5 * cos_q234
+        z = z_at_q6 + k.d6 * r32_at_q5
+        r11_at_q5 = r11_at_q234 * cos_q5 + sin_q1 * sin_q5
+        q6 = DEGREE * (axis_a6 - k.offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q234*sin_q6
-        r12_at_q6 = r12_at_q234*cos_q6 - r11_at_q5*sin_q6
-        r21_at_q5 = r21_at_q234*cos_q5 - cos_q1*sin_q5
-        r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q234*sin_q6
-        r22_at_q6 = r22_at_q234*cos_q6 - r21_at_q5*sin_q6
-        r31_at_q5 = cos_q5*sin_q234
-        r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6
-        r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6
+        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q234 * sin_q6
+        r12_at_q6 = r12_at_q234 * cos_q6 - r11_at_q5 * sin_q6
+        r21_at_q5 = r21_at_q234 * cos_q5 - cos_q1 * sin_q5
+        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q234 * sin_q6
+        r22_at_q6 = r22_at_q234 * cos_q6 - r21_at_q5 * sin_q6
+        r31_at_q5 = cos_q5 * sin_q234
+        r31_at_q6 = cos_q234 * sin_q6 + r31_at_q5 * cos_q6
+        r32_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
         wrist_x = x - d6_times_r12_at_q5  # wrist centre: the point in which the last axes intersect
         wrist_y = y - d6_times_r22_at_q5
-        branch_shoulder = (-wrist_x*cos_q1 - wrist_y*sin_q1)/k.machine_scale
+        branch_shoulder = (-wrist_x * cos_q1 - wrist_y * sin_q1) / k.machine_scale
         sin_q3 = sin(q3)
         return (
-            (
-                (x, y, z),
-                (
-                    (r11_at_q6, r12_at_q6, r12_at_q5),
-                    (r21_at_q6, r22_at_q6, r22_at_q5),
-                    (r31_at_q6, r32_at_q6, r32_at_q5),
-                ),
-                (branch_shoulder, sin_q3, sin_q5),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_q6, r12_at_q6, r12_at_q5), (r21_at_q6, r22_at_q6, r22_at_q5), (r31_at_q6, r32_at_q6, r32_at_q5)),
+            (branch_shoulder, sin_q3, sin_q5),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -135,32 +120,24 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        wrist_x = x - k.d6*r13  # wrist centre: the point in which the last axes intersect
-        wrist_y = y - k.d6*r23
-        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance of the point from the axis of q1
+        require(status, reasonable(ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, x, y, z), Status.BAD_INPUT)
+        wrist_x = x - k.d6 * r13  # wrist centre: the point in which the last axes intersect
+        wrist_y = y - k.d6 * r23
+        distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
-        ahead_squared_q1 = (distance_q1 - k.d4)*(k.d4 + distance_q1)
-        distance_q1_squared = distance_q1*distance_q1
+        ahead_squared_q1 = (distance_q1 - k.d4) * (k.d4 + distance_q1)
+        distance_q1_squared = distance_q1 * distance_q1
         # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_before_q1_for_q3 = -root(ahead_squared_q1)*sigma_shoulder
+        ahead_q1_before_q1_for_q3 = -root(ahead_squared_q1) * sigma_shoulder
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1)*DEGREE
+            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
-        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - k.d4*wrist_y)/distance_q1_squared
-        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + k.d4*wrist_x)/distance_q1_squared
+        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - k.d4 * wrist_y) / distance_q1_squared
+        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + k.d4 * wrist_x) / distance_q1_squared
         # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > k.machine_scale_times_free_angle,
@@ -168,175 +145,237 @@ class ArrayPrograms(Programs):
             elsewhere_cos_q1_before_q1_for_q3,
             (ref_a1,),
         )
-        wrist_z = z - k.d6*r33
+        wrist_z = z - k.d6 * r33
         wrist_y_from_q1_fixed = wrist_z - k.d1
 
         def elsewhere_ahead_q1(
-            ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, distance_q1: Real, r11: Real, r12: Real,
-            r13: Real, r21: Real, r22: Real, r23: Real, r31: Real, r32: Real, r33: Real, ref_a6: Real,
-            sigma_wrist: Whole, sin_q1_before_q1_for_q3: Real, wrist_x: Real, wrist_y: Real,
-            wrist_y_from_q1_fixed: Real, wrist_z: Real,
+            ahead_q1_before_q1_for_q3: Real,
+            cos_q1_before_q1_for_q3: Real,
+            distance_q1: Real,
+            r11: Real,
+            r12: Real,
+            r13: Real,
+            r21: Real,
+            r22: Real,
+            r23: Real,
+            r31: Real,
+            r32: Real,
+            r33: Real,
+            ref_a6: Real,
+            sigma_wrist: Whole,
+            sin_q1_before_q1_for_q3: Real,
+            wrist_x: Real,
+            wrist_y: Real,
+            wrist_y_from_q1_fixed: Real,
+            wrist_z: Real,
         ) -> Reals:
-            free_a6 = (ref_a6 - k.offset_a6)*DEGREE
+            free_a6 = (ref_a6 - k.offset_a6) * DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = sin(free_a6)
-            r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
-            r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
+            r21_from_q1_before_q1_for_q3 = r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3
+            r22_from_q1_before_q1_for_q3 = r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3
             radius_q6_before_q1_for_q3 = sqrt(
-                r21_from_q1_before_q1_for_q3*r21_from_q1_before_q1_for_q3
-                + r22_from_q1_before_q1_for_q3*r22_from_q1_before_q1_for_q3
+                r21_from_q1_before_q1_for_q3 * r21_from_q1_before_q1_for_q3
+                + r22_from_q1_before_q1_for_q3 * r22_from_q1_before_q1_for_q3
             )
-            q6_radius_of_q5_before_q1_for_q3 = sigma_wrist*radius_q6_before_q1_for_q3
-            cos_q5_before_q1_for_q3 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3
-            r21_from_q1_rate_q1_for_q3 = -r11*cos_q1_before_q1_for_q3 - r21*sin_q1_before_q1_for_q3
-            r22_from_q1_rate_q1_for_q3 = -r12*cos_q1_before_q1_for_q3 - r22*sin_q1_before_q1_for_q3
-            along_q6_rate_q1_for_q3 = -sigma_wrist*r21_from_q1_rate_q1_for_q3
-            across_q6_rate_q1_for_q3 = sigma_wrist*r22_from_q1_rate_q1_for_q3
+            q6_radius_of_q5_before_q1_for_q3 = sigma_wrist * radius_q6_before_q1_for_q3
+            cos_q5_before_q1_for_q3 = r13 * sin_q1_before_q1_for_q3 - r23 * cos_q1_before_q1_for_q3
+            r21_from_q1_rate_q1_for_q3 = -r11 * cos_q1_before_q1_for_q3 - r21 * sin_q1_before_q1_for_q3
+            r22_from_q1_rate_q1_for_q3 = -r12 * cos_q1_before_q1_for_q3 - r22 * sin_q1_before_q1_for_q3
+            along_q6_rate_q1_for_q3 = -sigma_wrist * r21_from_q1_rate_q1_for_q3
+            across_q6_rate_q1_for_q3 = sigma_wrist * r22_from_q1_rate_q1_for_q3
 
             def elsewhere_cos_q6_before_q1_for_q3(
-                cos_of_free_a6: Real, r21_from_q1_before_q1_for_q3: Real, r21_from_q1_rate_q1_for_q3: Real,
-                r22_from_q1_before_q1_for_q3: Real, r22_from_q1_rate_q1_for_q3: Real, radius_q6_before_q1_for_q3: Real,
+                cos_of_free_a6: Real,
+                r21_from_q1_before_q1_for_q3: Real,
+                r21_from_q1_rate_q1_for_q3: Real,
+                r22_from_q1_before_q1_for_q3: Real,
+                r22_from_q1_rate_q1_for_q3: Real,
+                radius_q6_before_q1_for_q3: Real,
                 sin_of_free_a6: Real,
             ) -> Reals:
                 radius_q6_rate_q1_for_q3 = select(
                     radius_q6_before_q1_for_q3 > 0.0,
                     (
-                        (
-                            r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                            + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
-                        )
-                        /radius_q6_before_q1_for_q3
-                    ),
+                        r21_from_q1_before_q1_for_q3 * r21_from_q1_rate_q1_for_q3
+                        + r22_from_q1_before_q1_for_q3 * r22_from_q1_rate_q1_for_q3
+                    )
+                    / radius_q6_before_q1_for_q3,
                     0.0,
                 )
                 return (cos_of_free_a6, sin_of_free_a6, radius_q6_rate_q1_for_q3, 0.0, 0.0)
 
-            along_q6_before_q1_for_q3 = -sigma_wrist*r21_from_q1_before_q1_for_q3
-            one_by_radius_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3
-            part_of_cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
-            across_q6_before_q1_for_q3 = sigma_wrist*r22_from_q1_before_q1_for_q3
-            part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3
+            along_q6_before_q1_for_q3 = -sigma_wrist * r21_from_q1_before_q1_for_q3
+            one_by_radius_q6_before_q1_for_q3 = 1.0 / radius_q6_before_q1_for_q3
+            part_of_cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
+            across_q6_before_q1_for_q3 = sigma_wrist * r22_from_q1_before_q1_for_q3
+            part_of_sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
             radius_q6_rate_q1_for_q3 = (
-                (
-                    r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-                    + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
-                )
-                /radius_q6_before_q1_for_q3
-            )
+                r21_from_q1_before_q1_for_q3 * r21_from_q1_rate_q1_for_q3
+                + r22_from_q1_before_q1_for_q3 * r22_from_q1_rate_q1_for_q3
+            ) / radius_q6_before_q1_for_q3
             cos_q6_rate_q1_for_q3 = (
-                (along_q6_rate_q1_for_q3 - part_of_cos_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
-                *one_by_radius_q6_before_q1_for_q3
-            )
+                along_q6_rate_q1_for_q3 - part_of_cos_q6_before_q1_for_q3 * radius_q6_rate_q1_for_q3
+            ) * one_by_radius_q6_before_q1_for_q3
             sin_q6_rate_q1_for_q3 = (
-                (across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3)
-                *one_by_radius_q6_before_q1_for_q3
-            )
-            found = elsewhere(
+                across_q6_rate_q1_for_q3 - part_of_sin_q6_before_q1_for_q3 * radius_q6_rate_q1_for_q3
+            ) * one_by_radius_q6_before_q1_for_q3
+            (
+                cos_q6_before_q1_for_q3,
+                sin_q6_before_q1_for_q3,
+                radius_q6_rate_q1_for_q3,
+                cos_q6_rate_q1_for_q3,
+                sin_q6_rate_q1_for_q3,
+            ) = elsewhere(
                 radius_q6_before_q1_for_q3 > 1e-11,
                 (
-                    part_of_cos_q6_before_q1_for_q3, part_of_sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3,
-                    cos_q6_rate_q1_for_q3, sin_q6_rate_q1_for_q3,
+                    part_of_cos_q6_before_q1_for_q3,
+                    part_of_sin_q6_before_q1_for_q3,
+                    radius_q6_rate_q1_for_q3,
+                    cos_q6_rate_q1_for_q3,
+                    sin_q6_rate_q1_for_q3,
                 ),
                 elsewhere_cos_q6_before_q1_for_q3,
                 (
-                    cos_of_free_a6, r21_from_q1_before_q1_for_q3, r21_from_q1_rate_q1_for_q3,
-                    r22_from_q1_before_q1_for_q3, r22_from_q1_rate_q1_for_q3, radius_q6_before_q1_for_q3, sin_of_free_a6,
+                    cos_of_free_a6,
+                    r21_from_q1_before_q1_for_q3,
+                    r21_from_q1_rate_q1_for_q3,
+                    r22_from_q1_before_q1_for_q3,
+                    r22_from_q1_rate_q1_for_q3,
+                    radius_q6_before_q1_for_q3,
+                    sin_of_free_a6,
                 ),
             )
-            (
-                cos_q6_before_q1_for_q3, sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3, cos_q6_rate_q1_for_q3,
-                sin_q6_rate_q1_for_q3,
-            ) = found
-            r21_from_q1_before_q6_before_q1_for_q3 = r31*cos_q6_before_q1_for_q3 - r32*sin_q6_before_q1_for_q3
+            r21_from_q1_before_q6_before_q1_for_q3 = r31 * cos_q6_before_q1_for_q3 - r32 * sin_q6_before_q1_for_q3
             r21_from_q1_before_q56_before_q1_for_q3 = (
-                r21_from_q1_before_q6_before_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_before_q1_for_q3*r33
+                r21_from_q1_before_q6_before_q1_for_q3 * cos_q5_before_q1_for_q3
+                - q6_radius_of_q5_before_q1_for_q3 * r33
             )
-            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - k.d5*r21_from_q1_before_q56_before_q1_for_q3
-            r22_from_q1_before_q6_before_q1_for_q3 = r32*cos_q6_before_q1_for_q3 + r31*sin_q6_before_q1_for_q3
-            wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed + k.d5*r22_from_q1_before_q6_before_q1_for_q3
+            wrist_x_from_q1_before_q1_for_q3 = (
+                ahead_q1_before_q1_for_q3 - k.d5 * r21_from_q1_before_q56_before_q1_for_q3
+            )
+            r22_from_q1_before_q6_before_q1_for_q3 = r32 * cos_q6_before_q1_for_q3 + r31 * sin_q6_before_q1_for_q3
+            wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed + k.d5 * r22_from_q1_before_q6_before_q1_for_q3
             # q3 has solutions where this is within its bound
             value_q1_for_q3 = (
-                wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
-                + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - k.a2_squared_plus_a3_squared
+                wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
+                + wrist_y_from_q1_before_q1_for_q3 * wrist_y_from_q1_before_q1_for_q3
+                - k.a2_squared_plus_a3_squared
             )
 
             def elsewhere_ahead_q1(
-                across_q6_rate_q1_for_q3: Real, ahead_q1_before_q1_for_q3: Real, along_q6_rate_q1_for_q3: Real,
-                cos_q1_before_q1_for_q3: Real, cos_q5_before_q1_for_q3: Real, cos_q6_before_q1_for_q3: Real,
-                cos_q6_rate_q1_for_q3: Real, distance_q1: Real, r11: Real, r12: Real, r13: Real, r21: Real,
-                r21_from_q1_before_q6_before_q1_for_q3: Real, r22: Real, r23: Real, r31: Real, r32: Real, r33: Real,
-                radius_q6_before_q1_for_q3: Real, radius_q6_rate_q1_for_q3: Real, sigma_wrist: Whole,
-                sin_q1_before_q1_for_q3: Real, sin_q6_before_q1_for_q3: Real, sin_q6_rate_q1_for_q3: Real,
-                value_q1_for_q3: Real, wrist_x: Real, wrist_x_from_q1_before_q1_for_q3: Real, wrist_y: Real,
-                wrist_y_from_q1_before_q1_for_q3: Real, wrist_z: Real,
+                across_q6_rate_q1_for_q3: Real,
+                ahead_q1_before_q1_for_q3: Real,
+                along_q6_rate_q1_for_q3: Real,
+                cos_q1_before_q1_for_q3: Real,
+                cos_q5_before_q1_for_q3: Real,
+                cos_q6_before_q1_for_q3: Real,
+                cos_q6_rate_q1_for_q3: Real,
+                distance_q1: Real,
+                r11: Real,
+                r12: Real,
+                r13: Real,
+                r21: Real,
+                r21_from_q1_before_q6_before_q1_for_q3: Real,
+                r22: Real,
+                r23: Real,
+                r31: Real,
+                r32: Real,
+                r33: Real,
+                radius_q6_before_q1_for_q3: Real,
+                radius_q6_rate_q1_for_q3: Real,
+                sigma_wrist: Whole,
+                sin_q1_before_q1_for_q3: Real,
+                sin_q6_before_q1_for_q3: Real,
+                sin_q6_rate_q1_for_q3: Real,
+                value_q1_for_q3: Real,
+                wrist_x: Real,
+                wrist_x_from_q1_before_q1_for_q3: Real,
+                wrist_y: Real,
+                wrist_y_from_q1_before_q1_for_q3: Real,
+                wrist_z: Real,
             ) -> Reals:
-                r23_from_q1_rate_q1_for_q3 = -r13*cos_q1_before_q1_for_q3 - r23*sin_q1_before_q1_for_q3
-                q6_radius_of_q5_rate_q1_for_q3 = sigma_wrist*radius_q6_rate_q1_for_q3
-                r21_from_q1_before_q6_rate_q1_for_q3 = r31*cos_q6_rate_q1_for_q3 - r32*sin_q6_rate_q1_for_q3
+                r23_from_q1_rate_q1_for_q3 = -r13 * cos_q1_before_q1_for_q3 - r23 * sin_q1_before_q1_for_q3
+                q6_radius_of_q5_rate_q1_for_q3 = sigma_wrist * radius_q6_rate_q1_for_q3
+                r21_from_q1_before_q6_rate_q1_for_q3 = r31 * cos_q6_rate_q1_for_q3 - r32 * sin_q6_rate_q1_for_q3
                 r21_from_q1_before_q56_rate_q1_for_q3 = (
-                    r21_from_q1_before_q6_rate_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_rate_q1_for_q3*r33
-                    - r21_from_q1_before_q6_before_q1_for_q3*r23_from_q1_rate_q1_for_q3
+                    r21_from_q1_before_q6_rate_q1_for_q3 * cos_q5_before_q1_for_q3
+                    - q6_radius_of_q5_rate_q1_for_q3 * r33
+                    - r21_from_q1_before_q6_before_q1_for_q3 * r23_from_q1_rate_q1_for_q3
                 )
-                wrist_x_from_q1_rate_q1_for_q3 = -k.d4 - k.d5*r21_from_q1_before_q56_rate_q1_for_q3
-                r22_from_q1_before_q6_rate_q1_for_q3 = r32*cos_q6_rate_q1_for_q3 + r31*sin_q6_rate_q1_for_q3
-                wrist_y_from_q1_rate_q1_for_q3 = k.d5*r22_from_q1_before_q6_rate_q1_for_q3
+                wrist_x_from_q1_rate_q1_for_q3 = -k.d4 - k.d5 * r21_from_q1_before_q56_rate_q1_for_q3
+                r22_from_q1_before_q6_rate_q1_for_q3 = r32 * cos_q6_rate_q1_for_q3 + r31 * sin_q6_rate_q1_for_q3
+                wrist_y_from_q1_rate_q1_for_q3 = k.d5 * r22_from_q1_before_q6_rate_q1_for_q3
                 # its derivative by q1
-                rate_q1_for_q3 = (
-                    2.0
-                    *(
-                        wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
-                        + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
-                    )
+                rate_q1_for_q3 = 2.0 * (
+                    wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_rate_q1_for_q3
+                    + wrist_y_from_q1_before_q1_for_q3 * wrist_y_from_q1_rate_q1_for_q3
                 )
                 excess_q1_for_q3 = select(
-                    value_q1_for_q3 > 0.0, value_q1_for_q3 - k.size_q1_for_q3, k.size_q1_for_q3 + value_q1_for_q3,
+                    value_q1_for_q3 > 0.0, value_q1_for_q3 - k.size_q1_for_q3, k.size_q1_for_q3 + value_q1_for_q3
                 )
                 # turn of q1 to the bound, to first order
                 turn_q1_for_q3 = select(
-                    absolute(rate_q1_for_q3) > k.size_q1_for_q3_times_rounding, -excess_q1_for_q3/rate_q1_for_q3, 1.0,
+                    absolute(rate_q1_for_q3) > k.size_q1_for_q3_times_rounding, -excess_q1_for_q3 / rate_q1_for_q3, 1.0
                 )
-                turn_q1_for_q3_squared = turn_q1_for_q3*turn_q1_for_q3
+                turn_q1_for_q3_squared = turn_q1_for_q3 * turn_q1_for_q3
                 # whether the first order is not enough: then q6 is chosen first
-                follows_q1_for_q3 = (
-                    (turn_q1_for_q3_squared > 1e-12)
-                    | (
-                        (across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3 + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3)
-                        *turn_q1_for_q3_squared > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                follows_q1_for_q3 = (turn_q1_for_q3_squared > 1e-12) | (
+                    (
+                        across_q6_rate_q1_for_q3 * across_q6_rate_q1_for_q3
+                        + along_q6_rate_q1_for_q3 * along_q6_rate_q1_for_q3
                     )
+                    * turn_q1_for_q3_squared
+                    > 1e-12 * radius_q6_before_q1_for_q3 * radius_q6_before_q1_for_q3
                 )
 
                 def elsewhere_best_cost_q1_for_q3(
-                    ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real,
-                    turn_q1_for_q3: Real, turn_q1_for_q3_squared: Real, wrist_x: Real, wrist_y: Real,
+                    ahead_q1_before_q1_for_q3: Real,
+                    cos_q1_before_q1_for_q3: Real,
+                    sin_q1_before_q1_for_q3: Real,
+                    turn_q1_for_q3: Real,
+                    turn_q1_for_q3_squared: Real,
+                    wrist_x: Real,
+                    wrist_y: Real,
                 ) -> Reals:
                     turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3_squared)
-                    one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-                    turned_cos_q1_for_q3 = (
-                        one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
+                    one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
+                    turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                        cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
                     )
-                    turned_sin_q1_for_q3 = (
-                        one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
+                    turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                        sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
                     )
                     # residual of the equation of q1
-                    turned_cost_q1_for_q3 = absolute(k.d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - k.d4*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
+                    turned_cost_q1_for_q3 = absolute(
+                        k.d4 + turned_cos_q1_for_q3 * wrist_y - turned_sin_q1_for_q3 * wrist_x
+                    )
+                    turned_ahead_q1_for_q3 = (
+                        ahead_q1_before_q1_for_q3 - k.d4 * turn_q1_for_q3
+                    ) * one_by_turned_length_q1_for_q3
                     return (turned_cost_q1_for_q3, turned_ahead_q1_for_q3, turned_cos_q1_for_q3, turned_sin_q1_for_q3)
 
-                part_of_across_q6_q1_for_q3 = k.d1_times_d5_times_2 - k.twice_d5*wrist_z
-                part_of_across_q6_q1_for_q3_2 = ahead_q1_before_q1_for_q3*k.twice_d5*cos_q5_before_q1_for_q3
-                along_q6_q1_for_q3 = -part_of_across_q6_q1_for_q3*r32 - part_of_across_q6_q1_for_q3_2*r31
-                across_q6_q1_for_q3 = part_of_across_q6_q1_for_q3_2*r32 - part_of_across_q6_q1_for_q3*r31
-                swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3 + along_q6_q1_for_q3*along_q6_q1_for_q3)
-                level_q6_q1_for_q3 = (
-                    value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3 - along_q6_q1_for_q3*cos_q6_before_q1_for_q3
+                part_of_across_q6_q1_for_q3 = k.d1_times_d5_times_2 - k.twice_d5 * wrist_z
+                part_of_across_q6_q1_for_q3_2 = ahead_q1_before_q1_for_q3 * k.twice_d5 * cos_q5_before_q1_for_q3
+                along_q6_q1_for_q3 = -part_of_across_q6_q1_for_q3 * r32 - part_of_across_q6_q1_for_q3_2 * r31
+                across_q6_q1_for_q3 = part_of_across_q6_q1_for_q3_2 * r32 - part_of_across_q6_q1_for_q3 * r31
+                swing_q6_q1_for_q3 = sqrt(
+                    across_q6_q1_for_q3 * across_q6_q1_for_q3 + along_q6_q1_for_q3 * along_q6_q1_for_q3
                 )
-                part_of_highest_q6_q1_for_q3_2 = (k.part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3
+                level_q6_q1_for_q3 = (
+                    value_q1_for_q3
+                    - across_q6_q1_for_q3 * sin_q6_before_q1_for_q3
+                    - along_q6_q1_for_q3 * cos_q6_before_q1_for_q3
+                )
+                part_of_highest_q6_q1_for_q3_2 = (
+                    k.part_of_highest_q6_q1_for_q3 - level_q6_q1_for_q3
+                ) / swing_q6_q1_for_q3
                 highest_q6_q1_for_q3 = select(
                     part_of_highest_q6_q1_for_q3_2 > 1.0,
                     1.0,
                     select(part_of_highest_q6_q1_for_q3_2 < -1.0, -1.0, part_of_highest_q6_q1_for_q3_2),
                 )
-                part_of_lowest_q6_q1_for_q3 = (level_q6_q1_for_q3 + k.part_of_highest_q6_q1_for_q3)/swing_q6_q1_for_q3
+                part_of_lowest_q6_q1_for_q3 = (level_q6_q1_for_q3 + k.part_of_highest_q6_q1_for_q3) / swing_q6_q1_for_q3
                 lowest_q6_q1_for_q3 = select(
                     -part_of_lowest_q6_q1_for_q3 > 1.0,
                     1.0,
@@ -347,73 +386,84 @@ class ArrayPrograms(Programs):
                 highest_q6_q1_for_q3 = select(holds, highest_q6_q1_for_q3, 1.0)
                 lowest_q6_q1_for_q3 = select(holds, lowest_q6_q1_for_q3, -1.0)
                 near_q6_q1_for_q3 = atan2(
-                    root((1.0 - highest_q6_q1_for_q3)*(1.0 + highest_q6_q1_for_q3)),
-                    highest_q6_q1_for_q3,
+                    root((1.0 - highest_q6_q1_for_q3) * (1.0 + highest_q6_q1_for_q3)), highest_q6_q1_for_q3
                 )
-                far_q6_q1_for_q3 = atan2(root((1.0 - lowest_q6_q1_for_q3)*(1.0 + lowest_q6_q1_for_q3)), lowest_q6_q1_for_q3)
+                far_q6_q1_for_q3 = atan2(
+                    root((1.0 - lowest_q6_q1_for_q3) * (1.0 + lowest_q6_q1_for_q3)), lowest_q6_q1_for_q3
+                )
                 centre_q6_q1_for_q3 = atan2(across_q6_q1_for_q3, along_q6_q1_for_q3)
                 angle_q6_q1_for_q3 = atan2(sin_q6_before_q1_for_q3, cos_q6_before_q1_for_q3)
                 side_q6_q1_for_q3 = select(
-                    along_q6_q1_for_q3*sin_q6_before_q1_for_q3 - across_q6_q1_for_q3*cos_q6_before_q1_for_q3 >= 0.0, 1.0,
+                    along_q6_q1_for_q3 * sin_q6_before_q1_for_q3 - across_q6_q1_for_q3 * cos_q6_before_q1_for_q3 >= 0.0,
+                    1.0,
                     -1.0,
                 )
                 moved_q6_q1_for_q3 = nearest_on_arc(
                     angle_q6_q1_for_q3,
-                    centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
-                    0.5*(far_q6_q1_for_q3 - near_q6_q1_for_q3),
+                    centre_q6_q1_for_q3 + 0.5 * (far_q6_q1_for_q3 + near_q6_q1_for_q3) * side_q6_q1_for_q3,
+                    0.5 * (far_q6_q1_for_q3 - near_q6_q1_for_q3),
                 )
                 near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
                 near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
-                near_q_q1_for_q3 = sigma_wrist*(near_cos_q6_q1_for_q3*r12 + near_sin_q6_q1_for_q3*r11)
-                near_p_q1_for_q3 = (-near_cos_q6_q1_for_q3*r22 - near_sin_q6_q1_for_q3*r21)*sigma_wrist
-                near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
+                near_q_q1_for_q3 = sigma_wrist * (near_cos_q6_q1_for_q3 * r12 + near_sin_q6_q1_for_q3 * r11)
+                near_p_q1_for_q3 = (-near_cos_q6_q1_for_q3 * r22 - near_sin_q6_q1_for_q3 * r21) * sigma_wrist
+                near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3 * near_p_q1_for_q3 + near_q_q1_for_q3 * near_q_q1_for_q3)
                 near_along_q1_for_q3 = (
-                    sigma_wrist*(near_cos_q6_q1_for_q3*r21 - near_sin_q6_q1_for_q3*r22)*near_q_q1_for_q3
-                    - (near_sin_q6_q1_for_q3*r12 - near_cos_q6_q1_for_q3*r11)*sigma_wrist*near_p_q1_for_q3
+                    sigma_wrist * (near_cos_q6_q1_for_q3 * r21 - near_sin_q6_q1_for_q3 * r22) * near_q_q1_for_q3
+                    - (near_sin_q6_q1_for_q3 * r12 - near_cos_q6_q1_for_q3 * r11) * sigma_wrist * near_p_q1_for_q3
                 )
                 # positive where the vector points along the later angle
                 near_towards_q1_for_q3 = select(
-                    absolute(near_along_q1_for_q3) <= 5e-12*near_radius_q1_for_q3,
-                    near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3, near_along_q1_for_q3,
+                    absolute(near_along_q1_for_q3) <= 5e-12 * near_radius_q1_for_q3,
+                    near_p_q1_for_q3 * sin_q1_before_q1_for_q3 - near_q_q1_for_q3 * cos_q1_before_q1_for_q3,
+                    near_along_q1_for_q3,
                 )
                 near_side_q1_for_q3 = select(near_towards_q1_for_q3 < 0.0, -1.0, 1.0)
-                part_of_near_cos_q1_for_q3 = near_side_q1_for_q3/near_radius_q1_for_q3
-                near_cos_q1_for_q3 = -near_q_q1_for_q3*part_of_near_cos_q1_for_q3
-                near_sin_q1_for_q3 = near_p_q1_for_q3*part_of_near_cos_q1_for_q3
+                part_of_near_cos_q1_for_q3 = near_side_q1_for_q3 / near_radius_q1_for_q3
+                near_cos_q1_for_q3 = -near_q_q1_for_q3 * part_of_near_cos_q1_for_q3
+                near_sin_q1_for_q3 = near_p_q1_for_q3 * part_of_near_cos_q1_for_q3
                 holds = near_radius_q1_for_q3 > 1e-12
                 # the earlier angle follows the later one
                 # it stays where every angle gives this later one
                 near_cos_q1_for_q3 = select(holds, near_cos_q1_for_q3, cos_q1_before_q1_for_q3)
                 near_sin_q1_for_q3 = select(holds, near_sin_q1_for_q3, sin_q1_before_q1_for_q3)
-                near_cost_q1_for_q3 = absolute(k.d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
-                mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # mirror image: on the other arc
+                near_cost_q1_for_q3 = absolute(k.d4 + near_cos_q1_for_q3 * wrist_y - near_sin_q1_for_q3 * wrist_x)
+                mirrored_q6_q1_for_q3 = 2.0 * centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # mirror image: on the other arc
                 mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
                 mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
-                mirrored_q_q1_for_q3 = sigma_wrist*(mirrored_cos_q6_q1_for_q3*r12 + mirrored_sin_q6_q1_for_q3*r11)
-                mirrored_p_q1_for_q3 = (-mirrored_cos_q6_q1_for_q3*r22 - mirrored_sin_q6_q1_for_q3*r21)*sigma_wrist
+                mirrored_q_q1_for_q3 = sigma_wrist * (mirrored_cos_q6_q1_for_q3 * r12 + mirrored_sin_q6_q1_for_q3 * r11)
+                mirrored_p_q1_for_q3 = (
+                    -mirrored_cos_q6_q1_for_q3 * r22 - mirrored_sin_q6_q1_for_q3 * r21
+                ) * sigma_wrist
                 mirrored_radius_q1_for_q3 = sqrt(
-                    mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
+                    mirrored_p_q1_for_q3 * mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3 * mirrored_q_q1_for_q3
                 )
                 mirrored_along_q1_for_q3 = (
-                    sigma_wrist*(mirrored_cos_q6_q1_for_q3*r21 - mirrored_sin_q6_q1_for_q3*r22)*mirrored_q_q1_for_q3
-                    - (mirrored_sin_q6_q1_for_q3*r12 - mirrored_cos_q6_q1_for_q3*r11)*sigma_wrist*mirrored_p_q1_for_q3
+                    sigma_wrist
+                    * (mirrored_cos_q6_q1_for_q3 * r21 - mirrored_sin_q6_q1_for_q3 * r22)
+                    * mirrored_q_q1_for_q3
+                    - (mirrored_sin_q6_q1_for_q3 * r12 - mirrored_cos_q6_q1_for_q3 * r11)
+                    * sigma_wrist
+                    * mirrored_p_q1_for_q3
                 )
                 # positive where the vector points along the later angle
                 mirrored_towards_q1_for_q3 = select(
-                    absolute(mirrored_along_q1_for_q3) <= 5e-12*mirrored_radius_q1_for_q3,
-                    mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3,
+                    absolute(mirrored_along_q1_for_q3) <= 5e-12 * mirrored_radius_q1_for_q3,
+                    mirrored_p_q1_for_q3 * sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3 * cos_q1_before_q1_for_q3,
                     mirrored_along_q1_for_q3,
                 )
                 mirrored_side_q1_for_q3 = select(mirrored_towards_q1_for_q3 < 0.0, -1.0, 1.0)
-                part_of_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
-                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*part_of_mirrored_cos_q1_for_q3
-                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*part_of_mirrored_cos_q1_for_q3
+                part_of_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3 / mirrored_radius_q1_for_q3
+                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3 * part_of_mirrored_cos_q1_for_q3
+                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3 * part_of_mirrored_cos_q1_for_q3
                 holds = mirrored_radius_q1_for_q3 > 1e-12
                 # the earlier angle follows the later one
                 # it stays where every angle gives this later one
                 mirrored_cos_q1_for_q3 = select(holds, mirrored_cos_q1_for_q3, cos_q1_before_q1_for_q3)
                 mirrored_sin_q1_for_q3 = select(holds, mirrored_sin_q1_for_q3, sin_q1_before_q1_for_q3)
-                mirrored_cost_q1_for_q3 = absolute(k.d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
+                mirrored_cost_q1_for_q3 = absolute(
+                    k.d4 + mirrored_cos_q1_for_q3 * wrist_y - mirrored_sin_q1_for_q3 * wrist_x
+                )
                 holds = near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3
                 swept_cost_q1_for_q3 = select(holds, near_cost_q1_for_q3, mirrored_cost_q1_for_q3)
                 swept_cos_q1_for_q3 = select(holds, near_cos_q1_for_q3, mirrored_cos_q1_for_q3)
@@ -422,14 +472,19 @@ class ArrayPrograms(Programs):
                 swept_cost_q1_for_q3 = select(holds, swept_cost_q1_for_q3, 0.0)
                 swept_cos_q1_for_q3 = select(holds, swept_cos_q1_for_q3, near_cos_q1_for_q3)
                 swept_sin_q1_for_q3 = select(holds, swept_sin_q1_for_q3, near_sin_q1_for_q3)
-                swept_ahead_q1_for_q3 = swept_cos_q1_for_q3*wrist_x + swept_sin_q1_for_q3*wrist_y
+                swept_ahead_q1_for_q3 = swept_cos_q1_for_q3 * wrist_x + swept_sin_q1_for_q3 * wrist_y
                 best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3 = elsewhere(
                     follows_q1_for_q3,
                     (swept_cost_q1_for_q3, swept_ahead_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3),
                     elsewhere_best_cost_q1_for_q3,
                     (
-                        ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, turn_q1_for_q3,
-                        turn_q1_for_q3_squared, wrist_x, wrist_y,
+                        ahead_q1_before_q1_for_q3,
+                        cos_q1_before_q1_for_q3,
+                        sin_q1_before_q1_for_q3,
+                        turn_q1_for_q3,
+                        turn_q1_for_q3_squared,
+                        wrist_x,
+                        wrist_y,
                     ),
                 )
                 holds = best_cost_q1_for_q3 > k.machine_scale_times_rounding
@@ -445,12 +500,36 @@ class ArrayPrograms(Programs):
                 (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
                 elsewhere_ahead_q1,
                 (
-                    across_q6_rate_q1_for_q3, ahead_q1_before_q1_for_q3, along_q6_rate_q1_for_q3, cos_q1_before_q1_for_q3,
-                    cos_q5_before_q1_for_q3, cos_q6_before_q1_for_q3, cos_q6_rate_q1_for_q3, distance_q1, r11, r12, r13,
-                    r21, r21_from_q1_before_q6_before_q1_for_q3, r22, r23, r31, r32, r33, radius_q6_before_q1_for_q3,
-                    radius_q6_rate_q1_for_q3, sigma_wrist, sin_q1_before_q1_for_q3, sin_q6_before_q1_for_q3,
-                    sin_q6_rate_q1_for_q3, value_q1_for_q3, wrist_x, wrist_x_from_q1_before_q1_for_q3, wrist_y,
-                    wrist_y_from_q1_before_q1_for_q3, wrist_z,
+                    across_q6_rate_q1_for_q3,
+                    ahead_q1_before_q1_for_q3,
+                    along_q6_rate_q1_for_q3,
+                    cos_q1_before_q1_for_q3,
+                    cos_q5_before_q1_for_q3,
+                    cos_q6_before_q1_for_q3,
+                    cos_q6_rate_q1_for_q3,
+                    distance_q1,
+                    r11,
+                    r12,
+                    r13,
+                    r21,
+                    r21_from_q1_before_q6_before_q1_for_q3,
+                    r22,
+                    r23,
+                    r31,
+                    r32,
+                    r33,
+                    radius_q6_before_q1_for_q3,
+                    radius_q6_rate_q1_for_q3,
+                    sigma_wrist,
+                    sin_q1_before_q1_for_q3,
+                    sin_q6_before_q1_for_q3,
+                    sin_q6_rate_q1_for_q3,
+                    value_q1_for_q3,
+                    wrist_x,
+                    wrist_x_from_q1_before_q1_for_q3,
+                    wrist_y,
+                    wrist_y_from_q1_before_q1_for_q3,
+                    wrist_z,
                 ),
             )
             return (ahead_q1, cos_q1, sin_q1)
@@ -461,29 +540,45 @@ class ArrayPrograms(Programs):
             (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
             elsewhere_ahead_q1,
             (
-                ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, distance_q1, r11, r12, r13, r21, r22, r23, r31,
-                r32, r33, ref_a6, sigma_wrist, sin_q1_before_q1_for_q3, wrist_x, wrist_y, wrist_y_from_q1_fixed,
+                ahead_q1_before_q1_for_q3,
+                cos_q1_before_q1_for_q3,
+                distance_q1,
+                r11,
+                r12,
+                r13,
+                r21,
+                r22,
+                r23,
+                r31,
+                r32,
+                r33,
+                ref_a6,
+                sigma_wrist,
+                sin_q1_before_q1_for_q3,
+                wrist_x,
+                wrist_y,
+                wrist_y_from_q1_fixed,
                 wrist_z,
             ),
         )
-        cos_q5 = r13*sin_q1 - r23*cos_q1  # cosine and sine of q5 from the q6 radius and r32 equations
-        r21_from_q1 = r21*cos_q1 - r11*sin_q1
-        r22_from_q1 = r22*cos_q1 - r12*sin_q1
+        cos_q5 = r13 * sin_q1 - r23 * cos_q1  # cosine and sine of q5 from the q6 radius and r32 equations
+        r21_from_q1 = r21 * cos_q1 - r11 * sin_q1
+        r22_from_q1 = r22 * cos_q1 - r12 * sin_q1
         # polar coordinates: the radius at angle q6
-        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)
-        q6_radius_of_q5 = sigma_wrist*radius_q6
-        q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33
+        radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
+        q6_radius_of_q5 = sigma_wrist * radius_q6
+        q6_radius_of_q5_times_r33 = q6_radius_of_q5 * r33
 
         def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
-            free_a6 = (ref_a6 - k.offset_a6)*DEGREE
+            free_a6 = (ref_a6 - k.offset_a6) * DEGREE
             cos_of_free_a6 = cos(free_a6)
             sin_of_free_a6 = sin(free_a6)
             return (cos_of_free_a6, sin_of_free_a6)
 
-        along_q6 = -sigma_wrist*r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
-        cos_q6_before_q6_of_q3 = along_q6/radius_q6
-        across_q6 = sigma_wrist*r22_from_q1
-        sin_q6_before_q6_of_q3 = across_q6/radius_q6
+        along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
+        cos_q6_before_q6_of_q3 = along_q6 / radius_q6
+        across_q6 = sigma_wrist * r22_from_q1
+        sin_q6_before_q6_of_q3 = across_q6 / radius_q6
         # in the singularity: the angle of the reference
         cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
             radius_q6 > 1e-11,
@@ -491,53 +586,69 @@ class ArrayPrograms(Programs):
             elsewhere_cos_q6_before_q6_of_q3,
             (ref_a6,),
         )
-        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
+        r21_from_q1_before_q6_before_q6_of_q3 = r31 * cos_q6_before_q6_of_q3 - r32 * sin_q6_before_q6_of_q3
         r21_from_q1_before_q56_before_q6_of_q3 = (
-            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5_times_r33
+            r21_from_q1_before_q6_before_q6_of_q3 * cos_q5 - q6_radius_of_q5_times_r33
         )
-        wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - k.d5*r21_from_q1_before_q56_before_q6_of_q3
-        r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
-        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + k.d5*r22_from_q1_before_q6_before_q6_of_q3
+        wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - k.d5 * r21_from_q1_before_q56_before_q6_of_q3
+        r22_from_q1_before_q6_before_q6_of_q3 = r32 * cos_q6_before_q6_of_q3 + r31 * sin_q6_before_q6_of_q3
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + k.d5 * r22_from_q1_before_q6_before_q6_of_q3
         # q3 has solutions where this is within its bound
         value_q6_of_q3 = (
-            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - k.a2_squared_plus_a3_squared
+            wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
+            - k.a2_squared_plus_a3_squared
         )
         size_of_value_q6_of_q3 = absolute(value_q6_of_q3)
 
         def elsewhere_cos_q6(
-            ahead_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5_times_r33: Real, r31: Real,
-            r32: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, size_of_value_q6_of_q3: Real,
-            value_q6_of_q3: Real, wrist_y_from_q1_fixed: Real,
+            ahead_q1: Real,
+            cos_q5: Real,
+            cos_q6_before_q6_of_q3: Real,
+            q6_radius_of_q5_times_r33: Real,
+            r31: Real,
+            r32: Real,
+            radius_q6: Real,
+            sin_q6_before_q6_of_q3: Real,
+            size_of_value_q6_of_q3: Real,
+            value_q6_of_q3: Real,
+            wrist_y_from_q1_fixed: Real,
         ) -> Reals:
 
             def elsewhere_cos_q6(
-                ahead_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5_times_r33: Real, r31: Real,
-                r32: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real,
+                ahead_q1: Real,
+                cos_q5: Real,
+                cos_q6_before_q6_of_q3: Real,
+                q6_radius_of_q5_times_r33: Real,
+                r31: Real,
+                r32: Real,
+                radius_q6: Real,
+                sin_q6_before_q6_of_q3: Real,
+                value_q6_of_q3: Real,
                 wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed = ahead_q1 + k.d5*q6_radius_of_q5_times_r33
-                wrist_y_from_q1_across = k.d5*r31
-                wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5
-                wrist_y_from_q1_along = k.d5*r32
-                along_q6_of_q3 = (
-                    2.0*(wrist_x_from_q1_along*wrist_x_from_q1_fixed + wrist_y_from_q1_along*wrist_y_from_q1_fixed)
+                wrist_x_from_q1_fixed = ahead_q1 + k.d5 * q6_radius_of_q5_times_r33
+                wrist_y_from_q1_across = k.d5 * r31
+                wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
+                wrist_y_from_q1_along = k.d5 * r32
+                along_q6_of_q3 = 2.0 * (
+                    wrist_x_from_q1_along * wrist_x_from_q1_fixed + wrist_y_from_q1_along * wrist_y_from_q1_fixed
                 )
-                wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5
-                across_q6_of_q3 = (
-                    2.0*(wrist_x_from_q1_across*wrist_x_from_q1_fixed + wrist_y_from_q1_across*wrist_y_from_q1_fixed)
+                wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
+                across_q6_of_q3 = 2.0 * (
+                    wrist_x_from_q1_across * wrist_x_from_q1_fixed + wrist_y_from_q1_across * wrist_y_from_q1_fixed
                 )
-                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+                swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
                 level_q6_of_q3 = (
-                    value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
+                    value_q6_of_q3 - across_q6_of_q3 * sin_q6_before_q6_of_q3 - along_q6_of_q3 * cos_q6_before_q6_of_q3
                 )
-                part_of_highest_q6_of_q3 = (k.size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
+                part_of_highest_q6_of_q3 = (k.size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
                 highest_q6_of_q3 = select(
                     part_of_highest_q6_of_q3 > 1.0,
                     1.0,
                     select(part_of_highest_q6_of_q3 < -1.0, -1.0, part_of_highest_q6_of_q3),
                 )
-                part_of_lowest_q6_of_q3 = (level_q6_of_q3 + k.size_q1_for_q3)/swing_q6_of_q3
+                part_of_lowest_q6_of_q3 = (level_q6_of_q3 + k.size_q1_for_q3) / swing_q6_of_q3
                 lowest_q6_of_q3 = select(
                     -part_of_lowest_q6_of_q3 > 1.0,
                     1.0,
@@ -547,17 +658,17 @@ class ArrayPrograms(Programs):
                 # feasible arc: cosines of its ends
                 highest_q6_of_q3 = select(holds, highest_q6_of_q3, 1.0)
                 lowest_q6_of_q3 = select(holds, lowest_q6_of_q3, -1.0)
-                near_q6_of_q3 = atan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-                far_q6_of_q3 = atan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
+                near_q6_of_q3 = atan2(root((1.0 - highest_q6_of_q3) * (1.0 + highest_q6_of_q3)), highest_q6_of_q3)
+                far_q6_of_q3 = atan2(root((1.0 - lowest_q6_of_q3) * (1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
                 centre_q6_of_q3 = atan2(across_q6_of_q3, along_q6_of_q3)
                 angle_q6_of_q3 = atan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
                 side_q6_of_q3 = select(
-                    along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0, 1.0, -1.0,
+                    along_q6_of_q3 * sin_q6_before_q6_of_q3 - across_q6_of_q3 * cos_q6_before_q6_of_q3 >= 0.0, 1.0, -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
                     angle_q6_of_q3,
-                    centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
-                    0.5*(far_q6_of_q3 - near_q6_of_q3),
+                    centre_q6_of_q3 + 0.5 * (far_q6_of_q3 + near_q6_of_q3) * side_q6_of_q3,
+                    0.5 * (far_q6_of_q3 - near_q6_of_q3),
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
                 sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
@@ -565,8 +676,11 @@ class ArrayPrograms(Programs):
                 part_of_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
                 # change of the pose by this motion
                 cost_q6_of_q3 = (
-                    sqrt(part_of_cost_q6_of_q3*part_of_cost_q6_of_q3 + part_of_cost_q6_of_q3_2*part_of_cost_q6_of_q3_2)
-                    *radius_q6
+                    sqrt(
+                        part_of_cost_q6_of_q3 * part_of_cost_q6_of_q3
+                        + part_of_cost_q6_of_q3_2 * part_of_cost_q6_of_q3_2
+                    )
+                    * radius_q6
                 )
                 stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11)
                 holds = stays_q6_of_q3
@@ -581,8 +695,16 @@ class ArrayPrograms(Programs):
                 (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
                 elsewhere_cos_q6,
                 (
-                    ahead_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5_times_r33, r31, r32, radius_q6,
-                    sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_y_from_q1_fixed,
+                    ahead_q1,
+                    cos_q5,
+                    cos_q6_before_q6_of_q3,
+                    q6_radius_of_q5_times_r33,
+                    r31,
+                    r32,
+                    radius_q6,
+                    sin_q6_before_q6_of_q3,
+                    value_q6_of_q3,
+                    wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6, sin_q6)
@@ -593,42 +715,51 @@ class ArrayPrograms(Programs):
             (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
             elsewhere_cos_q6,
             (
-                ahead_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5_times_r33, r31, r32, radius_q6,
-                sin_q6_before_q6_of_q3, size_of_value_q6_of_q3, value_q6_of_q3, wrist_y_from_q1_fixed,
+                ahead_q1,
+                cos_q5,
+                cos_q6_before_q6_of_q3,
+                q6_radius_of_q5_times_r33,
+                r31,
+                r32,
+                radius_q6,
+                sin_q6_before_q6_of_q3,
+                size_of_value_q6_of_q3,
+                value_q6_of_q3,
+                wrist_y_from_q1_fixed,
             ),
         )
-        r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5_times_r33
+        r21_from_q1_before_q6 = r31 * cos_q6 - r32 * sin_q6
+        r21_from_q1_before_q56 = r21_from_q1_before_q6 * cos_q5 - q6_radius_of_q5_times_r33
         # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1 = ahead_q1 - k.d5*r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
+        wrist_x_from_q1 = ahead_q1 - k.d5 * r21_from_q1_before_q56
+        r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
         # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + k.d5*r22_from_q1_before_q6
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + k.d5 * r22_from_q1_before_q6
         # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (k.a2_plus_a3 + reach)*(k.a2_plus_a3 - reach)
-        one_plus_cos_q3 = (reach - k.a2_minus_a3)*(k.a2_minus_a3 + reach)  # 1 + cosine, times the scale
+        one_less_cos_q3 = (k.a2_plus_a3 + reach) * (k.a2_plus_a3 - reach)
+        one_plus_cos_q3 = (reach - k.a2_minus_a3) * (k.a2_minus_a3 + reach)  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = select(absolute(sum_of_cos_q3) > 0.0, sum_of_cos_q3, 1.0)
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = 2.0*root(sine_square_q3)*sigma_elbow/absolute(divisor_of_cos_q3)
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = 2.0 * root(sine_square_q3) * sigma_elbow / absolute(divisor_of_cos_q3)
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - k.offset_a2)*DEGREE
+            free_a2 = (ref_a2 - k.offset_a2) * DEGREE
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
             return (direction_x_q2, direction_y_q2)
 
-        arm_along_q2 = k.a2 + k.a3*cos_q3
-        arm_across_q2 = k.a3*sin_q3
-        direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-        direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        arm_along_q2 = k.a2 + k.a3 * cos_q3
+        arm_across_q2 = k.a3 * sin_q3
+        direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
+        direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
         # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2, direction_y_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
@@ -638,25 +769,25 @@ class ArrayPrograms(Programs):
         )
         angle_q2 = atan2(direction_y_q2, direction_x_q2)
         open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(k.offset_a2 + angle_q2/DEGREE, near_a2)  # A2: whole turns added
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        axis_a2 = nearest_period(k.offset_a2 + angle_q2 / DEGREE, near_a2)  # A2: whole turns added
         angle_q3 = atan2(sin_q3, cos_q3)
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(k.offset_a3 + angle_q3/DEGREE, near_a3)  # A3: whole turns added
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        axis_a3 = nearest_period(k.offset_a3 + angle_q3 / DEGREE, near_a3)  # A3: whole turns added
         angle_with_q4 = atan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
-        axis_a4 = nearest_period(k.offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)/DEGREE, near_a4)
+        axis_a4 = nearest_period(k.offset_a4 + (angle_with_q4 - angle_q2 - angle_q3) / DEGREE, near_a4)
         open_a5 = select(k.single_a5, k.mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
-        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
+        near_a5 = select(turn_a5 != 0, 360.0 * select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         axis_a5 = nearest_period(k.offset_a5 + degrees(q6_radius_of_q5, cos_q5), near_a5)  # A5: whole turns added
         open_a6 = select(k.single_a6, k.mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
-        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
+        near_a6 = select(turn_a6 != 0, 360.0 * select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         axis_a6 = nearest_period(k.offset_a6 + degrees(sin_q6, cos_q6), near_a6)  # A6: whole turns added
         # q1: out of reach
-        require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
+        require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
         require(status, absolute(cos_q3) <= 1.0000000000005, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     Programs,
-    absolute,
     cos,
     degrees,
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -29,9 +29,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -39,54 +37,40 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9) & (absolute(axis_a5) <= 1e9) & (absolute(axis_a6) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        a5 = DEGREE*(axis_a5 - k.offset_a5)
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
+        a5 = DEGREE * (axis_a5 - k.offset_a5)
         cos_a5 = cos(a5)
-        a4 = DEGREE*(axis_a4 - k.offset_a4)
+        a4 = DEGREE * (axis_a4 - k.offset_a4)
         sin_a4 = sin(a4)
-        r13_at_a5 = cos_a5*sin_a4
+        r13_at_a5 = cos_a5 * sin_a4
         sin_a5 = sin(a5)
         cos_a4 = cos(a4)
-        r12_at_a5 = sin_a4*sin_a5
-        a6 = DEGREE*(axis_a6 - k.offset_a6)
+        r12_at_a5 = sin_a4 * sin_a5
+        a6 = DEGREE * (axis_a6 - k.offset_a6)
         sin_a6 = sin(a6)
         cos_a6 = cos(a6)
-        r11_at_a6 = cos_a4*cos_a6 + r12_at_a5*sin_a6
-        r12_at_a6 = r12_at_a5*cos_a6 - cos_a4*sin_a6
+        r11_at_a6 = cos_a4 * cos_a6 + r12_at_a5 * sin_a6
+        r12_at_a6 = r12_at_a5 * cos_a6 - cos_a4 * sin_a6
         a1 = axis_a1 - k.offset_a1
-        x = a1 + k.flange_x*r11_at_a6 + k.flange_y*r12_at_a6 + k.flange_z*r13_at_a5
-        r21_at_a6 = cos_a5*sin_a6
-        r22_at_a6 = cos_a5*cos_a6
+        x = a1 + k.flange_x * r11_at_a6 + k.flange_y * r12_at_a6 + k.flange_z * r13_at_a5
+        r21_at_a6 = cos_a5 * sin_a6
+        r22_at_a6 = cos_a5 * cos_a6
         a2 = axis_a2 - k.offset_a2
-        y = a2 + k.flange_x*r21_at_a6 + k.flange_y*r22_at_a6 - k.flange_z*sin_a5
-        r33_at_a5 = cos_a4*cos_a5
-        r32_at_a5 = cos_a4*sin_a5
-        r31_at_a6 = r32_at_a5*sin_a6 - cos_a6*sin_a4
-        r32_at_a6 = r32_at_a5*cos_a6 + sin_a4*sin_a6
+        y = a2 + k.flange_x * r21_at_a6 + k.flange_y * r22_at_a6 - k.flange_z * sin_a5
+        r33_at_a5 = cos_a4 * cos_a5
+        r32_at_a5 = cos_a4 * sin_a5
+        r31_at_a6 = r32_at_a5 * sin_a6 - cos_a6 * sin_a4
+        r32_at_a6 = r32_at_a5 * cos_a6 + sin_a4 * sin_a6
         a3 = axis_a3 - k.offset_a3
-        z = a3 + k.flange_x*r31_at_a6 + k.flange_y*r32_at_a6 + k.flange_z*r33_at_a5
+        z = a3 + k.flange_x * r31_at_a6 + k.flange_y * r32_at_a6 + k.flange_z * r33_at_a5
         return (
-            (
-                (x, y, z),
-                (
-                    (r11_at_a6, r12_at_a6, r13_at_a5),
-                    (r21_at_a6, r22_at_a6, -sin_a5),
-                    (r31_at_a6, r32_at_a6, r33_at_a5),
-                ),
-                (cos_a5,),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_a6, r12_at_a6, r13_at_a5), (r21_at_a6, r22_at_a6, -sin_a5), (r31_at_a6, r32_at_a6, r33_at_a5)),
+            (cos_a5,),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -97,50 +81,40 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_a4, ref_a5, ref_a6, x, y, z), Status.BAD_INPUT)
         # wrist centre: the point in which the last axes intersect
-        wrist_x = x - k.flange_x*r11 - k.flange_y*r12 - k.flange_z*r13
+        wrist_x = x - k.flange_x * r11 - k.flange_y * r12 - k.flange_z * r13
         axis_a1 = k.offset_a1 + wrist_x
-        wrist_y = y - k.flange_x*r21 - k.flange_y*r22 - k.flange_z*r23
+        wrist_y = y - k.flange_x * r21 - k.flange_y * r22 - k.flange_z * r23
         axis_a2 = k.offset_a2 + wrist_y
-        wrist_z = z - k.flange_x*r31 - k.flange_y*r32 - k.flange_z*r33
+        wrist_z = z - k.flange_x * r31 - k.flange_y * r32 - k.flange_z * r33
         axis_a3 = k.offset_a3 + wrist_z
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # polar coordinates: the radius at angle a4
+        radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
 
         def elsewhere_direction_x_a4(ref_a4: Real) -> Reals:
-            free_a4 = (ref_a4 - k.offset_a4)*DEGREE
+            free_a4 = (ref_a4 - k.offset_a4) * DEGREE
             direction_x_a4 = cos(free_a4)
             direction_y_a4 = sin(free_a4)
             return (direction_x_a4, direction_y_a4)
 
-        direction_x_a4 = sigma_wrist*r33
-        direction_y_a4 = sigma_wrist*r13
+        direction_x_a4 = sigma_wrist * r33
+        direction_y_a4 = sigma_wrist * r13
         # polar coordinates: angle a4 from the r33 and r13 equations; in the singularity: the angle of the reference
         direction_x_a4, direction_y_a4 = elsewhere(
-            radius_a4 > 1e-11,
-            (direction_x_a4, direction_y_a4),
-            elsewhere_direction_x_a4,
-            (ref_a4,),
+            radius_a4 > 1e-11, (direction_x_a4, direction_y_a4), elsewhere_direction_x_a4, (ref_a4,)
         )
         open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + degrees(direction_y_a4, direction_x_a4), near_a4)
-        a4_radius_of_a5 = sigma_wrist*radius_a4
+        a4_radius_of_a5 = sigma_wrist * radius_a4
         open_a5 = select(k.single_a5, k.mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
-        near_a5 = select(turn_a5 != 0, 360.0*select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
+        near_a5 = select(turn_a5 != 0, 360.0 * select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
         axis_a5 = nearest_period(k.offset_a5 + degrees(-r23, a4_radius_of_a5), near_a5)  # A5: whole turns added
-        scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
-        direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
+        scaled_r11_from_a4 = direction_x_a4 * r11 - direction_y_a4 * r31
+        direction_y_a6 = direction_y_a4 * r32 - direction_x_a4 * r12
         open_a6 = select(k.single_a6, k.mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
-        near_a6 = select(turn_a6 != 0, 360.0*select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
+        near_a6 = select(turn_a6 != 0, 360.0 * select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         # A6: whole turns added
         axis_a6 = nearest_period(k.offset_a6 + degrees(direction_y_a6, scaled_r11_from_a4), near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status

@@ -13,6 +13,7 @@ from softkin._array import (
     degrees,
     nearest_period,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -28,9 +29,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -38,51 +37,59 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
-        a1 = DEGREE*(axis_a1 - k.offset_a1)
+        require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = k.tcp_displacement_minus_displacement - k.inner_arm*cos_a1  # rod 1: centre about which it swings
-        a2 = DEGREE*(axis_a2 - k.offset_a2)
+        # rod 1: centre about which it swings
+        pivot_1_x = k.tcp_displacement_minus_displacement - k.inner_arm * cos_a1
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = k.inner_arm*cos_a2 - k.tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        # rod 2: centre about which it swings
+        pivot_2_x = k.inner_arm * cos_a2 - k.tcp_displacement_minus_displacement
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
-        pivot_1_y = -k.inner_arm*sin_a1
+        pivot_1_y = -k.inner_arm * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_y = -k.inner_arm*sin_a2
+        pivot_2_y = -k.inner_arm * sin_a2
         centre_1_to_2_y = pivot_2_y - pivot_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)  # distance between the centres
         # square of the height over the line of the centres
         height_square = (
-            0.25*(k.twice_outer_arm - between_centres)*(between_centres + k.twice_outer_arm)*between_centres
-            *between_centres/normal_divisor
+            0.25
+            * (k.twice_outer_arm - between_centres)
+            * (between_centres + k.twice_outer_arm)
+            * between_centres
+            * between_centres
+            / normal_divisor
         )
-        foot_x = 0.5*centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
-        height_by_normal = root(height_square/normal_divisor)*k.assembly_sign  # height, as a multiple of the normal
-        x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal
-        foot_y = 0.5*centre_1_to_2_y
-        y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal
+        foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square / normal_divisor) * k.assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        foot_y = 0.5 * centre_1_to_2_y
+        y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         span_1_x = x - k.tcp_displacement_minus_displacement  # rod 1: known part of its vector
-        branch_knee_1 = (span_1_x*sin_a1 - y*cos_a1)/k.outer_arm
+        branch_knee_1 = (span_1_x * sin_a1 - y * cos_a1) / k.outer_arm
         span_2_x = k.tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
-        branch_knee_2 = (-y*cos_a2 - span_2_x*sin_a2)/k.outer_arm
+        branch_knee_2 = (-y * cos_a2 - span_2_x * sin_a2) / k.outer_arm
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
             status,
-            ((normal_square > k.part_of_normal_divisor) & (height_square >= -k.outer_arm_squared_times_rounding)),
+            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.outer_arm_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (
-            ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_knee_1, branch_knee_2)),
-            status,
-        )
+            (x, y, 0.0),
+            ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            (branch_knee_1, branch_knee_2),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -92,61 +99,54 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_a1, ref_a2, x, y, z), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         span_1_x = x - k.tcp_displacement_minus_displacement  # rod 1: known part of its vector
-        y_squared = y*y
-        effective_a1 = root(y_squared + span_1_x*span_1_x)  # effective length of the arm that a1 turns
+        y_squared = y * y
+        effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
         divisor_a1 = select(effective_a1 > k.inner_arm_times_shortest_link, effective_a1, 1.0)
         # law of cosines for a1: rod 1: 1 - cosine, times a scale
-        one_less_cos_a1 = (divisor_a1 + k.inner_arm_minus_outer_arm)*(divisor_a1 + k.inner_arm_plus_outer_arm)
+        one_less_cos_a1 = (divisor_a1 + k.inner_arm_minus_outer_arm) * (divisor_a1 + k.inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (k.inner_arm_plus_outer_arm - divisor_a1)*(divisor_a1 - k.inner_arm_minus_outer_arm)
+        one_plus_cos_a1 = (k.inner_arm_plus_outer_arm - divisor_a1) * (divisor_a1 - k.inner_arm_minus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         span_2_x = k.tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
-        effective_a2 = root(y_squared + span_2_x*span_2_x)  # effective length of the arm that a2 turns
+        effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         divisor_a2 = select(effective_a2 > k.inner_arm_times_shortest_link, effective_a2, 1.0)
         # law of cosines for a2: rod 2: 1 - cosine, times a scale
-        one_less_cos_a2 = (k.inner_arm_plus_outer_arm - divisor_a2)*(divisor_a2 - k.inner_arm_minus_outer_arm)
+        one_less_cos_a2 = (k.inner_arm_plus_outer_arm - divisor_a2) * (divisor_a2 - k.inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (divisor_a2 + k.inner_arm_minus_outer_arm)*(divisor_a2 + k.inner_arm_plus_outer_arm)
+        one_plus_cos_a2 = (divisor_a2 + k.inner_arm_minus_outer_arm) * (divisor_a2 + k.inner_arm_plus_outer_arm)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/divisor_of_cos_a1
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0 * root(sine_square_a1) * sigma_knee_1 / divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a1 = (span_1_x*cos_swing_a1 - y*sin_swing_a1)/divisor_a1
-        rod_1_x = span_1_x + k.inner_arm*cos_a1
-        sin_a1 = (y*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
-        pivot_1_y = -k.inner_arm*sin_a1
+        cos_a1 = (span_1_x * cos_swing_a1 - y * sin_swing_a1) / divisor_a1
+        rod_1_x = span_1_x + k.inner_arm * cos_a1
+        sin_a1 = (y * cos_swing_a1 + span_1_x * sin_swing_a1) / divisor_a1
+        pivot_1_y = -k.inner_arm * sin_a1
         rod_1_y = y - pivot_1_y
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_knee_2 / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (span_2_x*cos_swing_a2 + y*sin_swing_a2)/divisor_a2
-        rod_2_x = span_2_x - k.inner_arm*cos_a2
-        sin_a2 = (span_2_x*sin_swing_a2 - y*cos_swing_a2)/divisor_a2
-        pivot_2_y = -k.inner_arm*sin_a2
+        cos_a2 = (span_2_x * cos_swing_a2 + y * sin_swing_a2) / divisor_a2
+        rod_2_x = span_2_x - k.inner_arm * cos_a2
+        sin_a2 = (span_2_x * sin_swing_a2 - y * cos_swing_a2) / divisor_a2
+        pivot_2_y = -k.inner_arm * sin_a2
         rod_2_y = y - pivot_2_y
-        type2_arms_aligned = k.assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+        type2_arms_aligned = k.assembly_sign_by_outer_arm_squared * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: whole turns added
         open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(k.offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: whole turns added
         # a1: its effective length is too short
         # a1: out of reach

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     OrientationPrograms,
-    absolute,
     cos,
     degrees,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -28,9 +28,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(OrientationPrograms):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -38,14 +36,14 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, absolute(axis_c) <= 1e9, Status.BAD_INPUT)
-        c = DEGREE*(axis_c - k.offset_c)
+        require(status, reasonable(axis_c), Status.BAD_INPUT)
+        c = DEGREE * (axis_c - k.offset_c)
         cos_c = cos(c)
         sin_c = sin(c)
         return ((0.0, 0.0, 0.0), ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), _ = rotation
@@ -54,13 +52,13 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
+        require(status, reasonable(ref_c), Status.BAD_INPUT)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         open_c = select(k.single_c, k.mid_c, ref_c)  # C: without a commanded turn, the value nearest to this
-        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
+        near_c = select(turn_c != 0, 360.0 * select(turn_c > 0, turn_c - 1, turn_c), open_c)
         axis_c = nearest_period(k.offset_c + degrees(heading_across, heading_along), near_c)  # C: whole turns added
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     Programs,
-    absolute,
     atan2,
     cos,
     degrees,
@@ -16,6 +15,7 @@ from softkin._array import (
     nearest_on_arc,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -31,9 +31,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -41,23 +39,19 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(axis_phi) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_theta) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_phi, axis_r, axis_theta), Status.BAD_INPUT)
         r = axis_r - k.offset_r
         axis_phi_minus_offset_phi = axis_phi - k.offset_phi
-        theta = DEGREE*(axis_theta - k.offset_theta)
+        theta = DEGREE * (axis_theta - k.offset_theta)
         cos_theta = cos(theta)
-        phi = DEGREE*axis_phi_minus_offset_phi
+        phi = DEGREE * axis_phi_minus_offset_phi
         sin_phi = sin(phi)
-        r_times_sin_phi = r*sin_phi
-        x = r_times_sin_phi*cos_theta  # x from the x equation, which is linear in it
+        r_times_sin_phi = r * sin_phi
+        x = r_times_sin_phi * cos_theta  # x from the x equation, which is linear in it
         sin_theta = sin(theta)
-        y = r_times_sin_phi*sin_theta  # y from the y equation, which is linear in it
+        y = r_times_sin_phi * sin_theta  # y from the y equation, which is linear in it
         cos_phi = cos(phi)
-        z = r*cos_phi  # z from the z equation, which is linear in it
+        z = r * cos_phi  # z from the z equation, which is linear in it
         # R where the machine has no pose
         require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
         # Phi where the machine has no pose
@@ -69,7 +63,7 @@ class ArrayPrograms(Programs):
         return ((x, y, z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -78,52 +72,39 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_phi) <= 1e9) & (absolute(ref_theta) <= 1e9) & (absolute(x) <= 1e9)
-                & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        radius_theta = sqrt(x*x + y*y)  # polar coordinates: the radius at angle theta
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # polar coordinates: the radius at angle phi
+        require(status, reasonable(ref_phi, ref_theta, x, y, z), Status.BAD_INPUT)
+        radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
+        radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
         axis_r = k.offset_r + radius_phi
 
         def elsewhere_direction_x_theta(ref_theta: Real) -> Reals:
-            free_theta = (ref_theta - k.offset_theta)*DEGREE
+            free_theta = (ref_theta - k.offset_theta) * DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
             return (direction_x_theta, direction_y_theta)
 
         # in the singularity: the angle of the reference
         direction_x_theta, direction_y_theta = elsewhere(
-            radius_theta > k.machine_scale_times_free_angle,
-            (x, y),
-            elsewhere_direction_x_theta,
-            (ref_theta,),
+            radius_theta > k.machine_scale_times_free_angle, (x, y), elsewhere_direction_x_theta, (ref_theta,)
         )
         # Theta: without a commanded turn, the value nearest to this
         open_theta = select(k.single_theta, k.mid_theta, ref_theta)
-        near_theta = select(turn_theta != 0, 360.0*select(turn_theta > 0, turn_theta - 1, turn_theta), open_theta)
+        near_theta = select(turn_theta != 0, 360.0 * select(turn_theta > 0, turn_theta - 1, turn_theta), open_theta)
         # Theta: whole turns added
         axis_theta = nearest_period(k.offset_theta + degrees(direction_y_theta, direction_x_theta), near_theta)
 
         def elsewhere_direction_x_phi(ref_phi: Real) -> Reals:
-            free_phi = (ref_phi - k.offset_phi)*DEGREE
-            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)
+            free_phi = (ref_phi - k.offset_phi) * DEGREE
+            part_of_direction_y_phi = nearest_on_arc(free_phi, 90.0 * DEGREE, 90.0 * DEGREE)
             direction_x_phi = cos(part_of_direction_y_phi)
             direction_y_phi = sin(part_of_direction_y_phi)
             return (direction_x_phi, direction_y_phi)
 
         # in the singularity: the angle of the reference
         direction_x_phi, direction_y_phi = elsewhere(
-            radius_phi > k.machine_scale_times_free_angle,
-            (z, radius_theta),
-            elsewhere_direction_x_phi,
-            (ref_phi,),
+            radius_phi > k.machine_scale_times_free_angle, (z, radius_theta), elsewhere_direction_x_phi, (ref_phi,)
         )
-        axis_phi = k.offset_phi + atan2(direction_y_phi, direction_x_phi)/DEGREE
+        axis_phi = k.offset_phi + atan2(direction_y_phi, direction_x_phi) / DEGREE
         return (axis_r, axis_theta, axis_phi), status
 
     def limits(self, axes: Reals) -> Codes:

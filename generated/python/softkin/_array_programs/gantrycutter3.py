@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     Programs,
-    absolute,
     cos,
     degrees,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -28,9 +28,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -38,32 +36,22 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(axis_r) <= 1e9) & (absolute(axis_x) <= 1e9) & (absolute(axis_y) <= 1e9)
-                & (absolute(axis_z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_r, axis_x, axis_y, axis_z), Status.BAD_INPUT)
         joint_x = axis_x - k.offset_x
         joint_y = axis_y - k.offset_y
         joint_z = axis_z - k.offset_z
-        r = DEGREE*(axis_r - k.offset_r)
+        r = DEGREE * (axis_r - k.offset_r)
         cos_r = cos(r)
         sin_r = sin(r)
-        direction_r_times_sin_r = k.direction_r*sin_r
+        direction_r_times_sin_r = k.direction_r * sin_r
         return (
-            (
-                (joint_x, joint_y, joint_z),
-                ((cos_r, -direction_r_times_sin_r, 0.0), (direction_r_times_sin_r, cos_r, 0.0), (0.0, 0.0, 1.0)),
-                (),
-            ),
-            status,
-        )
+            (joint_x, joint_y, joint_z),
+            ((cos_r, -direction_r_times_sin_r, 0.0), (direction_r_times_sin_r, cos_r, 0.0), (0.0, 0.0, 1.0)),
+            (),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -73,21 +61,17 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(ref_r) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_r, x, y, z), Status.BAD_INPUT)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         axis_x = k.offset_x + x
         axis_y = k.offset_y + y
         axis_z = k.offset_z + z
-        direction_y_r = k.direction_r*heading_across
+        direction_y_r = k.direction_r * heading_across
         open_r = select(k.single_r, k.mid_r, ref_r)  # R: without a commanded turn, the value nearest to this
-        near_r = select(turn_r != 0, 360.0*select(turn_r > 0, turn_r - 1, turn_r), open_r)
+        near_r = select(turn_r != 0, 360.0 * select(turn_r > 0, turn_r - 1, turn_r), open_r)
         axis_r = nearest_period(k.offset_r + degrees(direction_y_r, heading_along), near_r)  # R: whole turns added
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)

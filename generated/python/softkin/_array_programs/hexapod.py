@@ -12,6 +12,7 @@ from softkin._array import (
     cos,
     initial,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -30,26 +31,33 @@ if TYPE_CHECKING:
 class ArrayPrograms(StartedPrograms):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def find_platform(self, given: Values, status: Codes) -> Values:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""
         (
-            axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_r11, start_r12, start_r13, start_r21,
-            start_r22, start_r23, start_r31, start_r32, start_r33, start_x, start_y, start_z,
+            axis_l1,
+            axis_l2,
+            axis_l3,
+            axis_l4,
+            axis_l5,
+            axis_l6,
+            start_r11,
+            start_r12,
+            start_r13,
+            start_r21,
+            start_r22,
+            start_r23,
+            start_r31,
+            start_r32,
+            start_r33,
+            start_x,
+            start_y,
+            start_z,
         ) = given
         k = self.constants
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(axis_l1) <= 1e9) & (absolute(axis_l2) <= 1e9) & (absolute(axis_l3) <= 1e9)
-                & (absolute(axis_l4) <= 1e9) & (absolute(axis_l5) <= 1e9) & (absolute(axis_l6) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6), Status.BAD_INPUT)
         l1 = axis_l1 - k.offset_l1
         l2 = axis_l2 - k.offset_l2
         l3 = axis_l3 - k.offset_l3
@@ -57,158 +65,158 @@ class ArrayPrograms(StartedPrograms):
         l5 = axis_l5 - k.offset_l5
         l6 = axis_l6 - k.offset_l6
         # joints of the platform, seen from its origin, in the orientation of the start
-        start_arm_1_x = k.platform_1_x*start_r11 + k.platform_1_y*start_r12 + k.platform_1_z*start_r13
-        start_arm_1_y = k.platform_1_x*start_r21 + k.platform_1_y*start_r22 + k.platform_1_z*start_r23
-        start_arm_1_z = k.platform_1_x*start_r31 + k.platform_1_y*start_r32 + k.platform_1_z*start_r33
-        start_arm_2_x = k.platform_2_x*start_r11 + k.platform_2_y*start_r12 + k.platform_2_z*start_r13
-        start_arm_2_y = k.platform_2_x*start_r21 + k.platform_2_y*start_r22 + k.platform_2_z*start_r23
-        start_arm_2_z = k.platform_2_x*start_r31 + k.platform_2_y*start_r32 + k.platform_2_z*start_r33
-        start_arm_3_x = k.platform_3_x*start_r11 + k.platform_3_y*start_r12 + k.platform_3_z*start_r13
-        start_arm_3_y = k.platform_3_x*start_r21 + k.platform_3_y*start_r22 + k.platform_3_z*start_r23
-        start_arm_3_z = k.platform_3_x*start_r31 + k.platform_3_y*start_r32 + k.platform_3_z*start_r33
-        start_arm_4_x = k.platform_4_x*start_r11 + k.platform_4_y*start_r12 + k.platform_4_z*start_r13
-        start_arm_4_y = k.platform_4_x*start_r21 + k.platform_4_y*start_r22 + k.platform_4_z*start_r23
-        start_arm_4_z = k.platform_4_x*start_r31 + k.platform_4_y*start_r32 + k.platform_4_z*start_r33
-        start_arm_5_x = k.platform_5_x*start_r11 + k.platform_5_y*start_r12 + k.platform_5_z*start_r13
-        start_arm_5_y = k.platform_5_x*start_r21 + k.platform_5_y*start_r22 + k.platform_5_z*start_r23
-        start_arm_5_z = k.platform_5_x*start_r31 + k.platform_5_y*start_r32 + k.platform_5_z*start_r33
-        start_arm_6_x = k.platform_6_x*start_r11 + k.platform_6_y*start_r12 + k.platform_6_z*start_r13
-        start_arm_6_y = k.platform_6_x*start_r21 + k.platform_6_y*start_r22 + k.platform_6_z*start_r23
-        start_arm_6_z = k.platform_6_x*start_r31 + k.platform_6_y*start_r32 + k.platform_6_z*start_r33
+        start_arm_1_x = k.platform_1_x * start_r11 + k.platform_1_y * start_r12 + k.platform_1_z * start_r13
+        start_arm_1_y = k.platform_1_x * start_r21 + k.platform_1_y * start_r22 + k.platform_1_z * start_r23
+        start_arm_1_z = k.platform_1_x * start_r31 + k.platform_1_y * start_r32 + k.platform_1_z * start_r33
+        start_arm_2_x = k.platform_2_x * start_r11 + k.platform_2_y * start_r12 + k.platform_2_z * start_r13
+        start_arm_2_y = k.platform_2_x * start_r21 + k.platform_2_y * start_r22 + k.platform_2_z * start_r23
+        start_arm_2_z = k.platform_2_x * start_r31 + k.platform_2_y * start_r32 + k.platform_2_z * start_r33
+        start_arm_3_x = k.platform_3_x * start_r11 + k.platform_3_y * start_r12 + k.platform_3_z * start_r13
+        start_arm_3_y = k.platform_3_x * start_r21 + k.platform_3_y * start_r22 + k.platform_3_z * start_r23
+        start_arm_3_z = k.platform_3_x * start_r31 + k.platform_3_y * start_r32 + k.platform_3_z * start_r33
+        start_arm_4_x = k.platform_4_x * start_r11 + k.platform_4_y * start_r12 + k.platform_4_z * start_r13
+        start_arm_4_y = k.platform_4_x * start_r21 + k.platform_4_y * start_r22 + k.platform_4_z * start_r23
+        start_arm_4_z = k.platform_4_x * start_r31 + k.platform_4_y * start_r32 + k.platform_4_z * start_r33
+        start_arm_5_x = k.platform_5_x * start_r11 + k.platform_5_y * start_r12 + k.platform_5_z * start_r13
+        start_arm_5_y = k.platform_5_x * start_r21 + k.platform_5_y * start_r22 + k.platform_5_z * start_r23
+        start_arm_5_z = k.platform_5_x * start_r31 + k.platform_5_y * start_r32 + k.platform_5_z * start_r33
+        start_arm_6_x = k.platform_6_x * start_r11 + k.platform_6_y * start_r12 + k.platform_6_z * start_r13
+        start_arm_6_y = k.platform_6_x * start_r21 + k.platform_6_y * start_r22 + k.platform_6_z * start_r23
+        start_arm_6_z = k.platform_6_x * start_r31 + k.platform_6_y * start_r32 + k.platform_6_z * start_r33
         # the mirror that the machine does not have
-        require(
-            status,
-            (l1 > 0.0) & (l2 > 0.0) & (l3 > 0.0) & (l4 > 0.0) & (l5 > 0.0) & (l6 > 0.0),
-            Status.IMPOSSIBLE,
-        )
+        require(status, (l1 > 0.0) & (l2 > 0.0) & (l3 > 0.0) & (l4 > 0.0) & (l5 > 0.0) & (l6 > 0.0), Status.IMPOSSIBLE)
         # Newton's method: every pass improves the pose until all legs have their lengths
         x, y, z, roll, pitch, yaw, fitted = initial(start_x, start_y, start_z, 0.0, 0.0, 0.0, False)
         for _ in range(20):
             cos_pitch = cos(pitch)
             cos_yaw = cos(yaw)
-            turned_11 = cos_pitch*cos_yaw  # rotation from the start: Rz(yaw) Ry(pitch) Rx(roll)
+            turned_11 = cos_pitch * cos_yaw  # rotation from the start: Rz(yaw) Ry(pitch) Rx(roll)
             cos_roll = cos(roll)
             sin_roll = sin(roll)
             sin_pitch = sin(pitch)
             sin_yaw = sin(yaw)
-            cos_roll_times_sin_yaw = cos_roll*sin_yaw
-            cos_yaw_times_sin_roll = cos_yaw*sin_roll
-            turned_12 = cos_yaw_times_sin_roll*sin_pitch - cos_roll_times_sin_yaw
-            sin_roll_times_sin_yaw = sin_roll*sin_yaw
-            cos_roll_times_cos_yaw = cos_roll*cos_yaw
-            turned_13 = sin_roll_times_sin_yaw + cos_roll_times_cos_yaw*sin_pitch
-            arm_1_x = start_arm_1_x*turned_11 + start_arm_1_y*turned_12 + start_arm_1_z*turned_13
+            cos_roll_times_sin_yaw = cos_roll * sin_yaw
+            cos_yaw_times_sin_roll = cos_yaw * sin_roll
+            turned_12 = cos_yaw_times_sin_roll * sin_pitch - cos_roll_times_sin_yaw
+            sin_roll_times_sin_yaw = sin_roll * sin_yaw
+            cos_roll_times_cos_yaw = cos_roll * cos_yaw
+            turned_13 = sin_roll_times_sin_yaw + cos_roll_times_cos_yaw * sin_pitch
+            arm_1_x = start_arm_1_x * turned_11 + start_arm_1_y * turned_12 + start_arm_1_z * turned_13
             span_1_x = arm_1_x + x - k.base_1_x  # leg 1: vector from its joint on the base to its joint on the platform
-            turned_21 = cos_pitch*sin_yaw
-            turned_22 = cos_roll_times_cos_yaw + sin_pitch*sin_roll_times_sin_yaw
-            turned_23 = cos_roll_times_sin_yaw*sin_pitch - cos_yaw_times_sin_roll
-            arm_1_y = start_arm_1_x*turned_21 + start_arm_1_y*turned_22 + start_arm_1_z*turned_23
+            turned_21 = cos_pitch * sin_yaw
+            turned_22 = cos_roll_times_cos_yaw + sin_pitch * sin_roll_times_sin_yaw
+            turned_23 = cos_roll_times_sin_yaw * sin_pitch - cos_yaw_times_sin_roll
+            arm_1_y = start_arm_1_x * turned_21 + start_arm_1_y * turned_22 + start_arm_1_z * turned_23
             span_1_y = arm_1_y + y - k.base_1_y
-            turned_32 = cos_pitch*sin_roll
-            turned_33 = cos_pitch*cos_roll
-            arm_1_z = start_arm_1_y*turned_32 + start_arm_1_z*turned_33 - start_arm_1_x*sin_pitch
+            turned_32 = cos_pitch * sin_roll
+            turned_33 = cos_pitch * cos_roll
+            arm_1_z = start_arm_1_y * turned_32 + start_arm_1_z * turned_33 - start_arm_1_x * sin_pitch
             span_1_z = arm_1_z + z - k.base_1_z
-            length_1 = sqrt(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
+            length_1 = sqrt(span_1_x * span_1_x + span_1_y * span_1_y + span_1_z * span_1_z)
             error_1 = length_1 - l1  # length error of leg 1
-            arm_2_x = start_arm_2_x*turned_11 + start_arm_2_y*turned_12 + start_arm_2_z*turned_13
+            arm_2_x = start_arm_2_x * turned_11 + start_arm_2_y * turned_12 + start_arm_2_z * turned_13
             span_2_x = arm_2_x + x - k.base_2_x  # leg 2: vector from its joint on the base to its joint on the platform
-            arm_2_y = start_arm_2_x*turned_21 + start_arm_2_y*turned_22 + start_arm_2_z*turned_23
+            arm_2_y = start_arm_2_x * turned_21 + start_arm_2_y * turned_22 + start_arm_2_z * turned_23
             span_2_y = arm_2_y + y - k.base_2_y
-            arm_2_z = start_arm_2_y*turned_32 + start_arm_2_z*turned_33 - start_arm_2_x*sin_pitch
+            arm_2_z = start_arm_2_y * turned_32 + start_arm_2_z * turned_33 - start_arm_2_x * sin_pitch
             span_2_z = arm_2_z + z - k.base_2_z
-            length_2 = sqrt(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
+            length_2 = sqrt(span_2_x * span_2_x + span_2_y * span_2_y + span_2_z * span_2_z)
             error_2 = length_2 - l2  # length error of leg 2
-            arm_3_x = start_arm_3_x*turned_11 + start_arm_3_y*turned_12 + start_arm_3_z*turned_13
+            arm_3_x = start_arm_3_x * turned_11 + start_arm_3_y * turned_12 + start_arm_3_z * turned_13
             span_3_x = arm_3_x + x - k.base_3_x  # leg 3: vector from its joint on the base to its joint on the platform
-            arm_3_y = start_arm_3_x*turned_21 + start_arm_3_y*turned_22 + start_arm_3_z*turned_23
+            arm_3_y = start_arm_3_x * turned_21 + start_arm_3_y * turned_22 + start_arm_3_z * turned_23
             span_3_y = arm_3_y + y - k.base_3_y
-            arm_3_z = start_arm_3_y*turned_32 + start_arm_3_z*turned_33 - start_arm_3_x*sin_pitch
+            arm_3_z = start_arm_3_y * turned_32 + start_arm_3_z * turned_33 - start_arm_3_x * sin_pitch
             span_3_z = arm_3_z + z - k.base_3_z
-            length_3 = sqrt(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
+            length_3 = sqrt(span_3_x * span_3_x + span_3_y * span_3_y + span_3_z * span_3_z)
             error_3 = length_3 - l3  # length error of leg 3
-            arm_4_x = start_arm_4_x*turned_11 + start_arm_4_y*turned_12 + start_arm_4_z*turned_13
+            arm_4_x = start_arm_4_x * turned_11 + start_arm_4_y * turned_12 + start_arm_4_z * turned_13
             span_4_x = arm_4_x + x - k.base_4_x  # leg 4: vector from its joint on the base to its joint on the platform
-            arm_4_y = start_arm_4_x*turned_21 + start_arm_4_y*turned_22 + start_arm_4_z*turned_23
+            arm_4_y = start_arm_4_x * turned_21 + start_arm_4_y * turned_22 + start_arm_4_z * turned_23
             span_4_y = arm_4_y + y - k.base_4_y
-            arm_4_z = start_arm_4_y*turned_32 + start_arm_4_z*turned_33 - start_arm_4_x*sin_pitch
+            arm_4_z = start_arm_4_y * turned_32 + start_arm_4_z * turned_33 - start_arm_4_x * sin_pitch
             span_4_z = arm_4_z + z - k.base_4_z
-            length_4 = sqrt(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
+            length_4 = sqrt(span_4_x * span_4_x + span_4_y * span_4_y + span_4_z * span_4_z)
             error_4 = length_4 - l4  # length error of leg 4
-            arm_5_x = start_arm_5_x*turned_11 + start_arm_5_y*turned_12 + start_arm_5_z*turned_13
+            arm_5_x = start_arm_5_x * turned_11 + start_arm_5_y * turned_12 + start_arm_5_z * turned_13
             span_5_x = arm_5_x + x - k.base_5_x  # leg 5: vector from its joint on the base to its joint on the platform
-            arm_5_y = start_arm_5_x*turned_21 + start_arm_5_y*turned_22 + start_arm_5_z*turned_23
+            arm_5_y = start_arm_5_x * turned_21 + start_arm_5_y * turned_22 + start_arm_5_z * turned_23
             span_5_y = arm_5_y + y - k.base_5_y
-            arm_5_z = start_arm_5_y*turned_32 + start_arm_5_z*turned_33 - start_arm_5_x*sin_pitch
+            arm_5_z = start_arm_5_y * turned_32 + start_arm_5_z * turned_33 - start_arm_5_x * sin_pitch
             span_5_z = arm_5_z + z - k.base_5_z
-            length_5 = sqrt(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
+            length_5 = sqrt(span_5_x * span_5_x + span_5_y * span_5_y + span_5_z * span_5_z)
             error_5 = length_5 - l5  # length error of leg 5
-            arm_6_x = start_arm_6_x*turned_11 + start_arm_6_y*turned_12 + start_arm_6_z*turned_13
+            arm_6_x = start_arm_6_x * turned_11 + start_arm_6_y * turned_12 + start_arm_6_z * turned_13
             span_6_x = arm_6_x + x - k.base_6_x  # leg 6: vector from its joint on the base to its joint on the platform
-            arm_6_y = start_arm_6_x*turned_21 + start_arm_6_y*turned_22 + start_arm_6_z*turned_23
+            arm_6_y = start_arm_6_x * turned_21 + start_arm_6_y * turned_22 + start_arm_6_z * turned_23
             span_6_y = arm_6_y + y - k.base_6_y
-            arm_6_z = start_arm_6_y*turned_32 + start_arm_6_z*turned_33 - start_arm_6_x*sin_pitch
+            arm_6_z = start_arm_6_y * turned_32 + start_arm_6_z * turned_33 - start_arm_6_x * sin_pitch
             span_6_z = arm_6_z + z - k.base_6_z
-            length_6 = sqrt(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
+            length_6 = sqrt(span_6_x * span_6_x + span_6_y * span_6_y + span_6_z * span_6_z)
             error_6 = length_6 - l6  # length error of leg 6
             # whether every leg has its length
             fit = (
-                (absolute(error_1) <= k.within) & (absolute(error_2) <= k.within) & (absolute(error_3) <= k.within)
-                & (absolute(error_4) <= k.within) & (absolute(error_5) <= k.within) & (absolute(error_6) <= k.within)
+                (absolute(error_1) <= k.within)
+                & (absolute(error_2) <= k.within)
+                & (absolute(error_3) <= k.within)
+                & (absolute(error_4) <= k.within)
+                & (absolute(error_5) <= k.within)
+                & (absolute(error_6) <= k.within)
             )
             # leg 1 as a line: unit vector, and its moment about the platform's origin
             divisor_1 = select(length_1 > k.machine_scale_times_shortest_link, length_1, 1.0)
-            one_by_length_1 = 1.0/divisor_1
-            along_1_x = one_by_length_1*span_1_x
-            along_1_y = one_by_length_1*span_1_y
-            along_1_z = one_by_length_1*span_1_z
-            moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*k.one_by_platform_radius
-            moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*k.one_by_platform_radius
-            moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*k.one_by_platform_radius
+            one_by_length_1 = 1.0 / divisor_1
+            along_1_x = one_by_length_1 * span_1_x
+            along_1_y = one_by_length_1 * span_1_y
+            along_1_z = one_by_length_1 * span_1_z
+            moment_1_x = (along_1_z * arm_1_y - along_1_y * arm_1_z) * k.one_by_platform_radius
+            moment_1_y = (along_1_x * arm_1_z - along_1_z * arm_1_x) * k.one_by_platform_radius
+            moment_1_z = (along_1_y * arm_1_x - along_1_x * arm_1_y) * k.one_by_platform_radius
             # leg 2 as a line: unit vector, and its moment about the platform's origin
             divisor_2 = select(length_2 > k.machine_scale_times_shortest_link, length_2, 1.0)
-            one_by_length_2 = 1.0/divisor_2
-            along_2_x = one_by_length_2*span_2_x
-            along_2_y = one_by_length_2*span_2_y
-            along_2_z = one_by_length_2*span_2_z
-            moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*k.one_by_platform_radius
-            moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*k.one_by_platform_radius
-            moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*k.one_by_platform_radius
+            one_by_length_2 = 1.0 / divisor_2
+            along_2_x = one_by_length_2 * span_2_x
+            along_2_y = one_by_length_2 * span_2_y
+            along_2_z = one_by_length_2 * span_2_z
+            moment_2_x = (along_2_z * arm_2_y - along_2_y * arm_2_z) * k.one_by_platform_radius
+            moment_2_y = (along_2_x * arm_2_z - along_2_z * arm_2_x) * k.one_by_platform_radius
+            moment_2_z = (along_2_y * arm_2_x - along_2_x * arm_2_y) * k.one_by_platform_radius
             # leg 3 as a line: unit vector, and its moment about the platform's origin
             divisor_3 = select(length_3 > k.machine_scale_times_shortest_link, length_3, 1.0)
-            one_by_length_3 = 1.0/divisor_3
-            along_3_x = one_by_length_3*span_3_x
-            along_3_y = one_by_length_3*span_3_y
-            along_3_z = one_by_length_3*span_3_z
-            moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*k.one_by_platform_radius
-            moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*k.one_by_platform_radius
-            moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*k.one_by_platform_radius
+            one_by_length_3 = 1.0 / divisor_3
+            along_3_x = one_by_length_3 * span_3_x
+            along_3_y = one_by_length_3 * span_3_y
+            along_3_z = one_by_length_3 * span_3_z
+            moment_3_x = (along_3_z * arm_3_y - along_3_y * arm_3_z) * k.one_by_platform_radius
+            moment_3_y = (along_3_x * arm_3_z - along_3_z * arm_3_x) * k.one_by_platform_radius
+            moment_3_z = (along_3_y * arm_3_x - along_3_x * arm_3_y) * k.one_by_platform_radius
             # leg 4 as a line: unit vector, and its moment about the platform's origin
             divisor_4 = select(length_4 > k.machine_scale_times_shortest_link, length_4, 1.0)
-            one_by_length_4 = 1.0/divisor_4
-            along_4_x = one_by_length_4*span_4_x
-            along_4_y = one_by_length_4*span_4_y
-            along_4_z = one_by_length_4*span_4_z
-            moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*k.one_by_platform_radius
-            moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*k.one_by_platform_radius
-            moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*k.one_by_platform_radius
+            one_by_length_4 = 1.0 / divisor_4
+            along_4_x = one_by_length_4 * span_4_x
+            along_4_y = one_by_length_4 * span_4_y
+            along_4_z = one_by_length_4 * span_4_z
+            moment_4_x = (along_4_z * arm_4_y - along_4_y * arm_4_z) * k.one_by_platform_radius
+            moment_4_y = (along_4_x * arm_4_z - along_4_z * arm_4_x) * k.one_by_platform_radius
+            moment_4_z = (along_4_y * arm_4_x - along_4_x * arm_4_y) * k.one_by_platform_radius
             # leg 5 as a line: unit vector, and its moment about the platform's origin
             divisor_5 = select(length_5 > k.machine_scale_times_shortest_link, length_5, 1.0)
-            one_by_length_5 = 1.0/divisor_5
-            along_5_x = one_by_length_5*span_5_x
-            along_5_y = one_by_length_5*span_5_y
-            along_5_z = one_by_length_5*span_5_z
-            moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*k.one_by_platform_radius
-            moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*k.one_by_platform_radius
-            moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*k.one_by_platform_radius
+            one_by_length_5 = 1.0 / divisor_5
+            along_5_x = one_by_length_5 * span_5_x
+            along_5_y = one_by_length_5 * span_5_y
+            along_5_z = one_by_length_5 * span_5_z
+            moment_5_x = (along_5_z * arm_5_y - along_5_y * arm_5_z) * k.one_by_platform_radius
+            moment_5_y = (along_5_x * arm_5_z - along_5_z * arm_5_x) * k.one_by_platform_radius
+            moment_5_z = (along_5_y * arm_5_x - along_5_x * arm_5_y) * k.one_by_platform_radius
             # leg 6 as a line: unit vector, and its moment about the platform's origin
             divisor_6 = select(length_6 > k.machine_scale_times_shortest_link, length_6, 1.0)
-            one_by_length_6 = 1.0/divisor_6
-            along_6_x = one_by_length_6*span_6_x
-            along_6_y = one_by_length_6*span_6_y
-            along_6_z = one_by_length_6*span_6_z
-            moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*k.one_by_platform_radius
-            moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*k.one_by_platform_radius
-            moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*k.one_by_platform_radius
+            one_by_length_6 = 1.0 / divisor_6
+            along_6_x = one_by_length_6 * span_6_x
+            along_6_y = one_by_length_6 * span_6_y
+            along_6_z = one_by_length_6 * span_6_z
+            moment_6_x = (along_6_z * arm_6_y - along_6_y * arm_6_z) * k.one_by_platform_radius
+            moment_6_y = (along_6_x * arm_6_z - along_6_z * arm_6_x) * k.one_by_platform_radius
+            moment_6_z = (along_6_y * arm_6_x - along_6_x * arm_6_y) * k.one_by_platform_radius
             # Newton step: twist that cancels the length errors
             determinant, x_rate, y_rate, z_rate, swing_x, swing_y, swing_z = solve(
                 (
@@ -221,20 +229,22 @@ class ArrayPrograms(StartedPrograms):
                 ),
                 ((-error_1,), (-error_2,), (-error_3,), (-error_4,), (-error_5,), (-error_6,)),
             )
-            spin_x = k.one_by_platform_radius*swing_x
-            spin_y = k.one_by_platform_radius*swing_y
+            spin_x = k.one_by_platform_radius * swing_x
+            spin_y = k.one_by_platform_radius * swing_y
             cos_pitch_divisor = select(absolute(cos_pitch) > 1e-11, cos_pitch, 1.0)
-            roll_rate = (spin_x*cos_yaw + spin_y*sin_yaw)/cos_pitch_divisor
-            pitch_rate = spin_y*cos_yaw - spin_x*sin_yaw
-            spin_z = k.one_by_platform_radius*swing_z
-            yaw_rate = spin_z + roll_rate*sin_pitch
+            roll_rate = (spin_x * cos_yaw + spin_y * sin_yaw) / cos_pitch_divisor
+            pitch_rate = spin_y * cos_yaw - spin_x * sin_yaw
+            spin_z = k.one_by_platform_radius * swing_z
+            yaw_rate = spin_z + roll_rate * sin_pitch
             # size of the step, in characteristic lengths and radians
             size = root(
-                pitch_rate*pitch_rate + roll_rate*roll_rate + yaw_rate*yaw_rate
-                + (x_rate*x_rate + y_rate*y_rate + z_rate*z_rate)/k.machine_scale_squared
+                pitch_rate * pitch_rate
+                + roll_rate * roll_rate
+                + yaw_rate * yaw_rate
+                + (x_rate * x_rate + y_rate * y_rate + z_rate * z_rate) / k.machine_scale_squared
             )
-            stretch = select(size > 0.5, 2.0*size, 1.0)
-            one_by_stretch = 1.0/stretch
+            stretch = select(size > 0.5, 2.0 * size, 1.0)
+            one_by_stretch = 1.0 / stretch
             done = fit & fitted
             if settled(done, status):
                 break
@@ -242,33 +252,77 @@ class ArrayPrograms(StartedPrograms):
                 done,
                 (x, y, z, roll, pitch, yaw, fitted),
                 (
-                    x + one_by_stretch*x_rate,
-                    y + one_by_stretch*y_rate,
-                    z + one_by_stretch*z_rate,
-                    roll + one_by_stretch*roll_rate,
-                    pitch + one_by_stretch*pitch_rate,
-                    yaw + one_by_stretch*yaw_rate,
+                    x + one_by_stretch * x_rate,
+                    y + one_by_stretch * y_rate,
+                    z + one_by_stretch * z_rate,
+                    roll + one_by_stretch * roll_rate,
+                    pitch + one_by_stretch * pitch_rate,
+                    yaw + one_by_stretch * yaw_rate,
                     fit,
                 ),
             )
         require(status, done, Status.IMPOSSIBLE)
-        r11 = start_r11*turned_11 + start_r21*turned_12 + start_r31*turned_13  # the start, turned
-        r12 = start_r12*turned_11 + start_r22*turned_12 + start_r32*turned_13
-        r13 = start_r13*turned_11 + start_r23*turned_12 + start_r33*turned_13
-        r21 = start_r11*turned_21 + start_r21*turned_22 + start_r31*turned_23
-        r22 = start_r12*turned_21 + start_r22*turned_22 + start_r32*turned_23
-        r23 = start_r13*turned_21 + start_r23*turned_22 + start_r33*turned_23
-        r31 = start_r21*turned_32 + start_r31*turned_33 - start_r11*sin_pitch
-        r32 = start_r22*turned_32 + start_r32*turned_33 - start_r12*sin_pitch
-        r33 = start_r23*turned_32 + start_r33*turned_33 - start_r13*sin_pitch
+        r11 = start_r11 * turned_11 + start_r21 * turned_12 + start_r31 * turned_13  # the start, turned
+        r12 = start_r12 * turned_11 + start_r22 * turned_12 + start_r32 * turned_13
+        r13 = start_r13 * turned_11 + start_r23 * turned_12 + start_r33 * turned_13
+        r21 = start_r11 * turned_21 + start_r21 * turned_22 + start_r31 * turned_23
+        r22 = start_r12 * turned_21 + start_r22 * turned_22 + start_r32 * turned_23
+        r23 = start_r13 * turned_21 + start_r23 * turned_22 + start_r33 * turned_23
+        r31 = start_r21 * turned_32 + start_r31 * turned_33 - start_r11 * sin_pitch
+        r32 = start_r22 * turned_32 + start_r32 * turned_33 - start_r12 * sin_pitch
+        r33 = start_r23 * turned_32 + start_r33 * turned_33 - start_r13 * sin_pitch
         # the other assembly mode
-        require(status, k.assembly_sign*determinant > 0.0, Status.IMPOSSIBLE)
+        require(status, k.assembly_sign * determinant > 0.0, Status.IMPOSSIBLE)
         return (
-            x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, determinant, along_1_x, along_1_y, along_1_z,
-            moment_1_x, moment_1_y, moment_1_z, along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z,
-            along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z, along_4_x, along_4_y, along_4_z,
-            moment_4_x, moment_4_y, moment_4_z, along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z,
-            along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z,
+            x,
+            y,
+            z,
+            r11,
+            r12,
+            r13,
+            r21,
+            r22,
+            r23,
+            r31,
+            r32,
+            r33,
+            determinant,
+            along_1_x,
+            along_1_y,
+            along_1_z,
+            moment_1_x,
+            moment_1_y,
+            moment_1_z,
+            along_2_x,
+            along_2_y,
+            along_2_z,
+            moment_2_x,
+            moment_2_y,
+            moment_2_z,
+            along_3_x,
+            along_3_y,
+            along_3_z,
+            moment_3_x,
+            moment_3_y,
+            moment_3_z,
+            along_4_x,
+            along_4_y,
+            along_4_z,
+            moment_4_x,
+            moment_4_y,
+            moment_4_z,
+            along_5_x,
+            along_5_y,
+            along_5_z,
+            moment_5_x,
+            moment_5_y,
+            moment_5_z,
+            along_6_x,
+            along_6_y,
+            along_6_z,
+            moment_6_x,
+            moment_6_y,
+            moment_6_z,
         )
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
@@ -279,8 +333,24 @@ class ArrayPrograms(StartedPrograms):
         # pose of the platform, by Newton's method from the home pose
         found = self.find_platform(
             (
-                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, k.home_r11, k.home_r12, k.home_r13, k.home_r21,
-                k.home_r22, k.home_r23, k.home_r31, k.home_r32, k.home_r33, k.home_x, k.home_y, k.home_z,
+                axis_l1,
+                axis_l2,
+                axis_l3,
+                axis_l4,
+                axis_l5,
+                axis_l6,
+                k.home_r11,
+                k.home_r12,
+                k.home_r13,
+                k.home_r21,
+                k.home_r22,
+                k.home_r23,
+                k.home_r31,
+                k.home_r32,
+                k.home_r33,
+                k.home_x,
+                k.home_y,
+                k.home_z,
             ),
             status,
         )
@@ -288,28 +358,38 @@ class ArrayPrograms(StartedPrograms):
         return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ()), status
 
     def forward_from(
-        self, axes: Reals, start_position: Vector, start_rotation: Rotation,
+        self, axes: Reals, start_position: Vector, start_rotation: Rotation
     ) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """The same, found from a given start."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         start_x, start_y, start_z = start_position
-        (
-            (start_r11, start_r12, start_r13),
-            (start_r21, start_r22, start_r23),
-            (start_r31, start_r32, start_r33),
-        ) = start_rotation
+        (start_r11, start_r12, start_r13), (start_r21, start_r22, start_r23), (start_r31, start_r32, start_r33) = (
+            start_rotation
+        )
         status = passed(axes, start_position, start_rotation)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(start_x) <= 1e9) & (absolute(start_y) <= 1e9) & (absolute(start_z) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(start_x, start_y, start_z), Status.BAD_INPUT)
         # pose of the platform, by Newton's method from the given start
         found = self.find_platform(
             (
-                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_r11, start_r12, start_r13, start_r21,
-                start_r22, start_r23, start_r31, start_r32, start_r33, start_x, start_y, start_z,
+                axis_l1,
+                axis_l2,
+                axis_l3,
+                axis_l4,
+                axis_l5,
+                axis_l6,
+                start_r11,
+                start_r12,
+                start_r13,
+                start_r21,
+                start_r22,
+                start_r23,
+                start_r31,
+                start_r32,
+                start_r33,
+                start_x,
+                start_y,
+                start_z,
             ),
             status,
         )
@@ -317,7 +397,7 @@ class ArrayPrograms(StartedPrograms):
         return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -325,139 +405,145 @@ class ArrayPrograms(StartedPrograms):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        arm_1_x = k.platform_1_x*r11 + k.platform_1_y*r12 + k.platform_1_z*r13
+        require(status, reasonable(x, y, z), Status.BAD_INPUT)
+        arm_1_x = k.platform_1_x * r11 + k.platform_1_y * r12 + k.platform_1_z * r13
         span_1_x = arm_1_x + x - k.base_1_x  # rod 1: known part of its vector
-        arm_1_y = k.platform_1_x*r21 + k.platform_1_y*r22 + k.platform_1_z*r23
+        arm_1_y = k.platform_1_x * r21 + k.platform_1_y * r22 + k.platform_1_z * r23
         span_1_y = arm_1_y + y - k.base_1_y
-        arm_1_z = k.platform_1_x*r31 + k.platform_1_y*r32 + k.platform_1_z*r33
+        arm_1_z = k.platform_1_x * r31 + k.platform_1_y * r32 + k.platform_1_z * r33
         span_1_z = arm_1_z + z - k.base_1_z
-        radicand_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z  # quadratic equation for l1: rod 1
+        # quadratic equation for l1: rod 1
+        radicand_l1 = span_1_x * span_1_x + span_1_y * span_1_y + span_1_z * span_1_z
         l1 = root(radicand_l1)
-        arm_2_x = k.platform_2_x*r11 + k.platform_2_y*r12 + k.platform_2_z*r13
+        arm_2_x = k.platform_2_x * r11 + k.platform_2_y * r12 + k.platform_2_z * r13
         span_2_x = arm_2_x + x - k.base_2_x  # rod 2: known part of its vector
-        arm_2_y = k.platform_2_x*r21 + k.platform_2_y*r22 + k.platform_2_z*r23
+        arm_2_y = k.platform_2_x * r21 + k.platform_2_y * r22 + k.platform_2_z * r23
         span_2_y = arm_2_y + y - k.base_2_y
-        arm_2_z = k.platform_2_x*r31 + k.platform_2_y*r32 + k.platform_2_z*r33
+        arm_2_z = k.platform_2_x * r31 + k.platform_2_y * r32 + k.platform_2_z * r33
         span_2_z = arm_2_z + z - k.base_2_z
-        radicand_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z  # quadratic equation for l2: rod 2
+        # quadratic equation for l2: rod 2
+        radicand_l2 = span_2_x * span_2_x + span_2_y * span_2_y + span_2_z * span_2_z
         l2 = root(radicand_l2)
-        arm_3_x = k.platform_3_x*r11 + k.platform_3_y*r12 + k.platform_3_z*r13
+        arm_3_x = k.platform_3_x * r11 + k.platform_3_y * r12 + k.platform_3_z * r13
         span_3_x = arm_3_x + x - k.base_3_x  # rod 3: known part of its vector
-        arm_3_y = k.platform_3_x*r21 + k.platform_3_y*r22 + k.platform_3_z*r23
+        arm_3_y = k.platform_3_x * r21 + k.platform_3_y * r22 + k.platform_3_z * r23
         span_3_y = arm_3_y + y - k.base_3_y
-        arm_3_z = k.platform_3_x*r31 + k.platform_3_y*r32 + k.platform_3_z*r33
+        arm_3_z = k.platform_3_x * r31 + k.platform_3_y * r32 + k.platform_3_z * r33
         span_3_z = arm_3_z + z - k.base_3_z
-        radicand_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z  # quadratic equation for l3: rod 3
+        # quadratic equation for l3: rod 3
+        radicand_l3 = span_3_x * span_3_x + span_3_y * span_3_y + span_3_z * span_3_z
         l3 = root(radicand_l3)
-        arm_4_x = k.platform_4_x*r11 + k.platform_4_y*r12 + k.platform_4_z*r13
+        arm_4_x = k.platform_4_x * r11 + k.platform_4_y * r12 + k.platform_4_z * r13
         span_4_x = arm_4_x + x - k.base_4_x  # rod 4: known part of its vector
-        arm_4_y = k.platform_4_x*r21 + k.platform_4_y*r22 + k.platform_4_z*r23
+        arm_4_y = k.platform_4_x * r21 + k.platform_4_y * r22 + k.platform_4_z * r23
         span_4_y = arm_4_y + y - k.base_4_y
-        arm_4_z = k.platform_4_x*r31 + k.platform_4_y*r32 + k.platform_4_z*r33
+        arm_4_z = k.platform_4_x * r31 + k.platform_4_y * r32 + k.platform_4_z * r33
         span_4_z = arm_4_z + z - k.base_4_z
-        radicand_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z  # quadratic equation for l4: rod 4
+        # quadratic equation for l4: rod 4
+        radicand_l4 = span_4_x * span_4_x + span_4_y * span_4_y + span_4_z * span_4_z
         l4 = root(radicand_l4)
-        arm_5_x = k.platform_5_x*r11 + k.platform_5_y*r12 + k.platform_5_z*r13
+        arm_5_x = k.platform_5_x * r11 + k.platform_5_y * r12 + k.platform_5_z * r13
         span_5_x = arm_5_x + x - k.base_5_x  # rod 5: known part of its vector
-        arm_5_y = k.platform_5_x*r21 + k.platform_5_y*r22 + k.platform_5_z*r23
+        arm_5_y = k.platform_5_x * r21 + k.platform_5_y * r22 + k.platform_5_z * r23
         span_5_y = arm_5_y + y - k.base_5_y
-        arm_5_z = k.platform_5_x*r31 + k.platform_5_y*r32 + k.platform_5_z*r33
+        arm_5_z = k.platform_5_x * r31 + k.platform_5_y * r32 + k.platform_5_z * r33
         span_5_z = arm_5_z + z - k.base_5_z
-        radicand_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z  # quadratic equation for l5: rod 5
+        # quadratic equation for l5: rod 5
+        radicand_l5 = span_5_x * span_5_x + span_5_y * span_5_y + span_5_z * span_5_z
         l5 = root(radicand_l5)
-        arm_6_x = k.platform_6_x*r11 + k.platform_6_y*r12 + k.platform_6_z*r13
+        arm_6_x = k.platform_6_x * r11 + k.platform_6_y * r12 + k.platform_6_z * r13
         span_6_x = arm_6_x + x - k.base_6_x  # rod 6: known part of its vector
-        arm_6_y = k.platform_6_x*r21 + k.platform_6_y*r22 + k.platform_6_z*r23
+        arm_6_y = k.platform_6_x * r21 + k.platform_6_y * r22 + k.platform_6_z * r23
         span_6_y = arm_6_y + y - k.base_6_y
-        arm_6_z = k.platform_6_x*r31 + k.platform_6_y*r32 + k.platform_6_z*r33
+        arm_6_z = k.platform_6_x * r31 + k.platform_6_y * r32 + k.platform_6_z * r33
         span_6_z = arm_6_z + z - k.base_6_z
-        radicand_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z  # quadratic equation for l6: rod 6
+        # quadratic equation for l6: rod 6
+        radicand_l6 = span_6_x * span_6_x + span_6_y * span_6_y + span_6_z * span_6_z
         l6 = root(radicand_l6)
         # leg 1 as a line: unit vector, and its moment about the platform's origin
         divisor_1 = select(l1 > k.machine_scale_times_shortest_link, l1, 1.0)
-        one_by_l1 = 1.0/divisor_1
-        along_1_x = one_by_l1*span_1_x
-        along_1_y = one_by_l1*span_1_y
-        along_1_z = one_by_l1*span_1_z
-        cos_base_lean_1 = along_1_x*k.home_along_1_x + along_1_y*k.home_along_1_y + along_1_z*k.home_along_1_z
+        one_by_l1 = 1.0 / divisor_1
+        along_1_x = one_by_l1 * span_1_x
+        along_1_y = one_by_l1 * span_1_y
+        along_1_z = one_by_l1 * span_1_z
+        cos_base_lean_1 = along_1_x * k.home_along_1_x + along_1_y * k.home_along_1_y + along_1_z * k.home_along_1_z
         # leg 2 as a line: unit vector, and its moment about the platform's origin
         divisor_2 = select(l2 > k.machine_scale_times_shortest_link, l2, 1.0)
-        one_by_l2 = 1.0/divisor_2
-        along_2_x = one_by_l2*span_2_x
-        along_2_y = one_by_l2*span_2_y
-        along_2_z = one_by_l2*span_2_z
-        cos_base_lean_2 = along_2_x*k.home_along_2_x + along_2_y*k.home_along_2_y + along_2_z*k.home_along_2_z
+        one_by_l2 = 1.0 / divisor_2
+        along_2_x = one_by_l2 * span_2_x
+        along_2_y = one_by_l2 * span_2_y
+        along_2_z = one_by_l2 * span_2_z
+        cos_base_lean_2 = along_2_x * k.home_along_2_x + along_2_y * k.home_along_2_y + along_2_z * k.home_along_2_z
         # leg 3 as a line: unit vector, and its moment about the platform's origin
         divisor_3 = select(l3 > k.machine_scale_times_shortest_link, l3, 1.0)
-        one_by_l3 = 1.0/divisor_3
-        along_3_x = one_by_l3*span_3_x
-        along_3_y = one_by_l3*span_3_y
-        along_3_z = one_by_l3*span_3_z
-        cos_base_lean_3 = along_3_x*k.home_along_3_x + along_3_y*k.home_along_3_y + along_3_z*k.home_along_3_z
+        one_by_l3 = 1.0 / divisor_3
+        along_3_x = one_by_l3 * span_3_x
+        along_3_y = one_by_l3 * span_3_y
+        along_3_z = one_by_l3 * span_3_z
+        cos_base_lean_3 = along_3_x * k.home_along_3_x + along_3_y * k.home_along_3_y + along_3_z * k.home_along_3_z
         # leg 4 as a line: unit vector, and its moment about the platform's origin
         divisor_4 = select(l4 > k.machine_scale_times_shortest_link, l4, 1.0)
-        one_by_l4 = 1.0/divisor_4
-        along_4_x = one_by_l4*span_4_x
-        along_4_y = one_by_l4*span_4_y
-        along_4_z = one_by_l4*span_4_z
-        cos_base_lean_4 = along_4_x*k.home_along_4_x + along_4_y*k.home_along_4_y + along_4_z*k.home_along_4_z
+        one_by_l4 = 1.0 / divisor_4
+        along_4_x = one_by_l4 * span_4_x
+        along_4_y = one_by_l4 * span_4_y
+        along_4_z = one_by_l4 * span_4_z
+        cos_base_lean_4 = along_4_x * k.home_along_4_x + along_4_y * k.home_along_4_y + along_4_z * k.home_along_4_z
         # leg 5 as a line: unit vector, and its moment about the platform's origin
         divisor_5 = select(l5 > k.machine_scale_times_shortest_link, l5, 1.0)
-        one_by_l5 = 1.0/divisor_5
-        along_5_x = one_by_l5*span_5_x
-        along_5_y = one_by_l5*span_5_y
-        along_5_z = one_by_l5*span_5_z
-        cos_base_lean_5 = along_5_x*k.home_along_5_x + along_5_y*k.home_along_5_y + along_5_z*k.home_along_5_z
+        one_by_l5 = 1.0 / divisor_5
+        along_5_x = one_by_l5 * span_5_x
+        along_5_y = one_by_l5 * span_5_y
+        along_5_z = one_by_l5 * span_5_z
+        cos_base_lean_5 = along_5_x * k.home_along_5_x + along_5_y * k.home_along_5_y + along_5_z * k.home_along_5_z
         # leg 6 as a line: unit vector, and its moment about the platform's origin
         divisor_6 = select(l6 > k.machine_scale_times_shortest_link, l6, 1.0)
-        one_by_l6 = 1.0/divisor_6
-        along_6_x = one_by_l6*span_6_x
-        along_6_y = one_by_l6*span_6_y
-        along_6_z = one_by_l6*span_6_z
-        cos_base_lean_6 = along_6_x*k.home_along_6_x + along_6_y*k.home_along_6_y + along_6_z*k.home_along_6_z
-        cone_axis_1_x = k.plate_axis_1_x*r11 + k.plate_axis_1_y*r12 + k.plate_axis_1_z*r13
-        cone_axis_1_y = k.plate_axis_1_x*r21 + k.plate_axis_1_y*r22 + k.plate_axis_1_z*r23
-        cone_axis_1_z = k.plate_axis_1_x*r31 + k.plate_axis_1_y*r32 + k.plate_axis_1_z*r33
-        cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
-        cone_axis_2_x = k.plate_axis_2_x*r11 + k.plate_axis_2_y*r12 + k.plate_axis_2_z*r13
-        cone_axis_2_y = k.plate_axis_2_x*r21 + k.plate_axis_2_y*r22 + k.plate_axis_2_z*r23
-        cone_axis_2_z = k.plate_axis_2_x*r31 + k.plate_axis_2_y*r32 + k.plate_axis_2_z*r33
-        cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
-        cone_axis_3_x = k.plate_axis_3_x*r11 + k.plate_axis_3_y*r12 + k.plate_axis_3_z*r13
-        cone_axis_3_y = k.plate_axis_3_x*r21 + k.plate_axis_3_y*r22 + k.plate_axis_3_z*r23
-        cone_axis_3_z = k.plate_axis_3_x*r31 + k.plate_axis_3_y*r32 + k.plate_axis_3_z*r33
-        cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
-        cone_axis_4_x = k.plate_axis_4_x*r11 + k.plate_axis_4_y*r12 + k.plate_axis_4_z*r13
-        cone_axis_4_y = k.plate_axis_4_x*r21 + k.plate_axis_4_y*r22 + k.plate_axis_4_z*r23
-        cone_axis_4_z = k.plate_axis_4_x*r31 + k.plate_axis_4_y*r32 + k.plate_axis_4_z*r33
-        cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
-        cone_axis_5_x = k.plate_axis_5_x*r11 + k.plate_axis_5_y*r12 + k.plate_axis_5_z*r13
-        cone_axis_5_y = k.plate_axis_5_x*r21 + k.plate_axis_5_y*r22 + k.plate_axis_5_z*r23
-        cone_axis_5_z = k.plate_axis_5_x*r31 + k.plate_axis_5_y*r32 + k.plate_axis_5_z*r33
-        cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
-        cone_axis_6_x = k.plate_axis_6_x*r11 + k.plate_axis_6_y*r12 + k.plate_axis_6_z*r13
-        cone_axis_6_y = k.plate_axis_6_x*r21 + k.plate_axis_6_y*r22 + k.plate_axis_6_z*r23
-        cone_axis_6_z = k.plate_axis_6_x*r31 + k.plate_axis_6_y*r32 + k.plate_axis_6_z*r33
-        cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
-        moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*k.one_by_platform_radius
-        moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*k.one_by_platform_radius
-        moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*k.one_by_platform_radius
-        moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*k.one_by_platform_radius
-        moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*k.one_by_platform_radius
-        moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*k.one_by_platform_radius
-        moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*k.one_by_platform_radius
-        moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*k.one_by_platform_radius
-        moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*k.one_by_platform_radius
-        moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*k.one_by_platform_radius
-        moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*k.one_by_platform_radius
-        moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*k.one_by_platform_radius
-        moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*k.one_by_platform_radius
-        moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*k.one_by_platform_radius
-        moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*k.one_by_platform_radius
-        moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*k.one_by_platform_radius
-        moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*k.one_by_platform_radius
-        moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*k.one_by_platform_radius
+        one_by_l6 = 1.0 / divisor_6
+        along_6_x = one_by_l6 * span_6_x
+        along_6_y = one_by_l6 * span_6_y
+        along_6_z = one_by_l6 * span_6_z
+        cos_base_lean_6 = along_6_x * k.home_along_6_x + along_6_y * k.home_along_6_y + along_6_z * k.home_along_6_z
+        cone_axis_1_x = k.plate_axis_1_x * r11 + k.plate_axis_1_y * r12 + k.plate_axis_1_z * r13
+        cone_axis_1_y = k.plate_axis_1_x * r21 + k.plate_axis_1_y * r22 + k.plate_axis_1_z * r23
+        cone_axis_1_z = k.plate_axis_1_x * r31 + k.plate_axis_1_y * r32 + k.plate_axis_1_z * r33
+        cos_plate_lean_1 = along_1_x * cone_axis_1_x + along_1_y * cone_axis_1_y + along_1_z * cone_axis_1_z
+        cone_axis_2_x = k.plate_axis_2_x * r11 + k.plate_axis_2_y * r12 + k.plate_axis_2_z * r13
+        cone_axis_2_y = k.plate_axis_2_x * r21 + k.plate_axis_2_y * r22 + k.plate_axis_2_z * r23
+        cone_axis_2_z = k.plate_axis_2_x * r31 + k.plate_axis_2_y * r32 + k.plate_axis_2_z * r33
+        cos_plate_lean_2 = along_2_x * cone_axis_2_x + along_2_y * cone_axis_2_y + along_2_z * cone_axis_2_z
+        cone_axis_3_x = k.plate_axis_3_x * r11 + k.plate_axis_3_y * r12 + k.plate_axis_3_z * r13
+        cone_axis_3_y = k.plate_axis_3_x * r21 + k.plate_axis_3_y * r22 + k.plate_axis_3_z * r23
+        cone_axis_3_z = k.plate_axis_3_x * r31 + k.plate_axis_3_y * r32 + k.plate_axis_3_z * r33
+        cos_plate_lean_3 = along_3_x * cone_axis_3_x + along_3_y * cone_axis_3_y + along_3_z * cone_axis_3_z
+        cone_axis_4_x = k.plate_axis_4_x * r11 + k.plate_axis_4_y * r12 + k.plate_axis_4_z * r13
+        cone_axis_4_y = k.plate_axis_4_x * r21 + k.plate_axis_4_y * r22 + k.plate_axis_4_z * r23
+        cone_axis_4_z = k.plate_axis_4_x * r31 + k.plate_axis_4_y * r32 + k.plate_axis_4_z * r33
+        cos_plate_lean_4 = along_4_x * cone_axis_4_x + along_4_y * cone_axis_4_y + along_4_z * cone_axis_4_z
+        cone_axis_5_x = k.plate_axis_5_x * r11 + k.plate_axis_5_y * r12 + k.plate_axis_5_z * r13
+        cone_axis_5_y = k.plate_axis_5_x * r21 + k.plate_axis_5_y * r22 + k.plate_axis_5_z * r23
+        cone_axis_5_z = k.plate_axis_5_x * r31 + k.plate_axis_5_y * r32 + k.plate_axis_5_z * r33
+        cos_plate_lean_5 = along_5_x * cone_axis_5_x + along_5_y * cone_axis_5_y + along_5_z * cone_axis_5_z
+        cone_axis_6_x = k.plate_axis_6_x * r11 + k.plate_axis_6_y * r12 + k.plate_axis_6_z * r13
+        cone_axis_6_y = k.plate_axis_6_x * r21 + k.plate_axis_6_y * r22 + k.plate_axis_6_z * r23
+        cone_axis_6_z = k.plate_axis_6_x * r31 + k.plate_axis_6_y * r32 + k.plate_axis_6_z * r33
+        cos_plate_lean_6 = along_6_x * cone_axis_6_x + along_6_y * cone_axis_6_y + along_6_z * cone_axis_6_z
+        moment_1_x = (along_1_z * arm_1_y - along_1_y * arm_1_z) * k.one_by_platform_radius
+        moment_1_y = (along_1_x * arm_1_z - along_1_z * arm_1_x) * k.one_by_platform_radius
+        moment_1_z = (along_1_y * arm_1_x - along_1_x * arm_1_y) * k.one_by_platform_radius
+        moment_2_x = (along_2_z * arm_2_y - along_2_y * arm_2_z) * k.one_by_platform_radius
+        moment_2_y = (along_2_x * arm_2_z - along_2_z * arm_2_x) * k.one_by_platform_radius
+        moment_2_z = (along_2_y * arm_2_x - along_2_x * arm_2_y) * k.one_by_platform_radius
+        moment_3_x = (along_3_z * arm_3_y - along_3_y * arm_3_z) * k.one_by_platform_radius
+        moment_3_y = (along_3_x * arm_3_z - along_3_z * arm_3_x) * k.one_by_platform_radius
+        moment_3_z = (along_3_y * arm_3_x - along_3_x * arm_3_y) * k.one_by_platform_radius
+        moment_4_x = (along_4_z * arm_4_y - along_4_y * arm_4_z) * k.one_by_platform_radius
+        moment_4_y = (along_4_x * arm_4_z - along_4_z * arm_4_x) * k.one_by_platform_radius
+        moment_4_z = (along_4_y * arm_4_x - along_4_x * arm_4_y) * k.one_by_platform_radius
+        moment_5_x = (along_5_z * arm_5_y - along_5_y * arm_5_z) * k.one_by_platform_radius
+        moment_5_y = (along_5_x * arm_5_z - along_5_z * arm_5_x) * k.one_by_platform_radius
+        moment_5_z = (along_5_y * arm_5_x - along_5_x * arm_5_y) * k.one_by_platform_radius
+        moment_6_x = (along_6_z * arm_6_y - along_6_y * arm_6_z) * k.one_by_platform_radius
+        moment_6_y = (along_6_x * arm_6_z - along_6_z * arm_6_x) * k.one_by_platform_radius
+        moment_6_z = (along_6_y * arm_6_x - along_6_x * arm_6_y) * k.one_by_platform_radius
         # determinant of the legs as lines: zero in a type 2 singularity
         (determinant,) = solve(
             (
@@ -513,7 +599,7 @@ class ArrayPrograms(StartedPrograms):
         # leg 6: its joint on the plate bends beyond its cone
         require(status, cos_plate_lean_6 >= k.least_cos_plate, Status.UNREACHABLE)
         # rods_dependent: the other assembly mode, or too near to losing the plate
-        require(status, k.assembly_sign*determinant >= k.min_type2_margin, Status.UNREACHABLE)
+        require(status, k.assembly_sign * determinant >= k.min_type2_margin, Status.UNREACHABLE)
         return (axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6), status
 
     def limits(self, axes: Reals) -> Codes:

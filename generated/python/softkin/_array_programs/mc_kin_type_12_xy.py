@@ -13,6 +13,7 @@ from softkin._array import (
     degrees,
     nearest_period,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -29,9 +30,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -39,18 +38,18 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
-        a1 = DEGREE*(axis_a1 - k.offset_a1)
+        require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
         sin_a1 = sin(a1)
-        pivot_upper_x = -k.link_length_1*sin_a1  # rod upper: centre about which it swings
+        pivot_upper_x = -k.link_length_1 * sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
-        pivot_upper_y = -k.link_length_1*cos_a1
-        a2 = DEGREE*(axis_a2 - k.offset_a2)
+        pivot_upper_y = -k.link_length_1 * cos_a1
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = k.part_of_scaled_pivot_rear_y*sin_a1 - k.part_of_scaled_pivot_rear_y_2*cos_a2
+        scaled_pivot_rear_x = k.part_of_scaled_pivot_rear_y * sin_a1 - k.part_of_scaled_pivot_rear_y_2 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y*cos_a1 + k.part_of_scaled_pivot_rear_y_2*sin_a2
+        scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y * cos_a1 + k.part_of_scaled_pivot_rear_y_2 * sin_a2
         centre_1_x: Real
         centre_2_x: Real
         centre_1_y: Real
@@ -68,24 +67,27 @@ class ArrayPrograms(Programs):
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
-        normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
         normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)  # distance between the centres
-        one_by_normal_square = 1.0/normal_divisor
+        one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
         height_square = (
-            0.25*(k.link_length_2_plus_radius_2 - between_centres)*(between_centres + k.link_length_2_minus_radius_2)
-            *(between_centres + k.link_length_2_plus_radius_2)*(between_centres - k.link_length_2_minus_radius_2)
-            *one_by_normal_square
+            0.25
+            * (k.link_length_2_plus_radius_2 - between_centres)
+            * (between_centres + k.link_length_2_minus_radius_2)
+            * (between_centres + k.link_length_2_plus_radius_2)
+            * (between_centres - k.link_length_2_minus_radius_2)
+            * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5*(normal_divisor + k.part_of_foot_fraction)*one_by_normal_square
-        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        foot_fraction = 0.5 * (normal_divisor + k.part_of_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*k.assembly_sign
-        x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal
-        foot_y = centre_1_to_2_y*foot_fraction
-        y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        x = centre_1_x + foot_x - centre_1_to_2_y * height_by_normal
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = centre_1_y + foot_y + centre_1_to_2_x * height_by_normal
         span_upper_x: Real
         span_upper_y: Real
         if k.swap_xy:
@@ -94,27 +96,24 @@ class ArrayPrograms(Programs):
         else:
             span_upper_x = x  # rod upper: known part of its vector
             span_upper_y = y
-        branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/k.link_length_2
-        span_rear_x = -k.link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
-        span_rear_y = -k.link_length_3_by_link_length_2*span_upper_y
+        branch_t = (span_upper_x * cos_a1 - span_upper_y * sin_a1) / k.link_length_2
+        span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
         branch_w = (
-            (
-                (k.part_of_branch_w*cos_a1 - k.link_length_2*span_rear_y)*cos_a2
-                + (k.part_of_branch_w*sin_a1 - k.link_length_2*span_rear_x)*sin_a2
-            )
-            /k.link_length_2_times_link_length_4
-        )
+            (k.part_of_branch_w * cos_a1 - k.link_length_2 * span_rear_y) * cos_a2
+            + (k.part_of_branch_w * sin_a1 - k.link_length_2 * span_rear_x) * sin_a2
+        ) / k.link_length_2_times_link_length_4
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
             status,
-            ((normal_square > k.part_of_normal_divisor) & (height_square >= -k.link_length_2_squared_times_rounding)),
+            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.link_length_2_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_t, branch_w)), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -124,14 +123,7 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_a1, ref_a2, x, y, z), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         span_upper_x: Real
@@ -143,53 +135,54 @@ class ArrayPrograms(Programs):
             span_upper_x = x  # rod upper: known part of its vector
             span_upper_y = y
         # effective length of the arm that a1 turns
-        effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        effective_a1 = sqrt(span_upper_x * span_upper_x + span_upper_y * span_upper_y)
         divisor_a1 = select(effective_a1 > k.link_length_1_times_shortest_link, effective_a1, 1.0)
         # law of cosines for a1: rod upper: 1 - cosine, times a scale
-        one_less_cos_a1 = (
-            (divisor_a1 + k.link_length_1_minus_link_length_2)*(divisor_a1 + k.link_length_1_plus_link_length_2)
+        one_less_cos_a1 = (divisor_a1 + k.link_length_1_minus_link_length_2) * (
+            divisor_a1 + k.link_length_1_plus_link_length_2
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (
-            (k.link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - k.link_length_1_minus_link_length_2)
+        one_plus_cos_a1 = (k.link_length_1_plus_link_length_2 - divisor_a1) * (
+            divisor_a1 - k.link_length_1_minus_link_length_2
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/divisor_of_cos_a1
-        sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1
-        span_rear_x = -k.link_length_3_by_link_length_2*span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - k.part_of_along_a2*sin_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = -2.0 * root(sine_square_a1) * sigma_t / divisor_of_cos_a1
+        sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
+        span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        along_a2 = span_rear_x - k.part_of_along_a2 * sin_a1
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1
-        span_rear_y = -k.link_length_3_by_link_length_2*span_upper_y
-        across_a2 = k.part_of_along_a2*cos_a1 - span_rear_y
-        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length of the arm that a2 turns
+        cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
+        span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
+        across_a2 = k.part_of_along_a2 * cos_a1 - span_rear_y
+        # effective length of the arm that a2 turns
+        effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = select(effective_a2 > k.link_length_5_times_shortest_link, effective_a2, 1.0)
         # law of cosines for a2: rod rear: 1 - cosine, times a scale
-        one_less_cos_a2 = (
-            (divisor_a2 + k.link_length_4_plus_link_length_5)*(divisor_a2 + k.link_length_5_minus_link_length_4)
+        one_less_cos_a2 = (divisor_a2 + k.link_length_4_plus_link_length_5) * (
+            divisor_a2 + k.link_length_5_minus_link_length_4
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (
-            (k.link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 - k.link_length_5_minus_link_length_4)
+        one_plus_cos_a2 = (k.link_length_4_plus_link_length_5 - divisor_a2) * (
+            divisor_a2 - k.link_length_5_minus_link_length_4
         )
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-        pivot_upper_x = -k.link_length_1*sin_a1  # rod upper: centre about which it swings
-        pivot_upper_y = -k.link_length_1*cos_a1
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        pivot_upper_x = -k.link_length_1 * sin_a1  # rod upper: centre about which it swings
+        pivot_upper_y = -k.link_length_1 * cos_a1
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_w / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2
+        cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = k.part_of_scaled_pivot_rear_y*sin_a1 - k.part_of_scaled_pivot_rear_y_2*cos_a2
-        sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2
-        scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y*cos_a1 + k.part_of_scaled_pivot_rear_y_2*sin_a2
+        scaled_pivot_rear_x = k.part_of_scaled_pivot_rear_y * sin_a1 - k.part_of_scaled_pivot_rear_y_2 * cos_a2
+        sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
+        scaled_pivot_rear_y = k.part_of_scaled_pivot_rear_y * cos_a1 + k.part_of_scaled_pivot_rear_y_2 * sin_a2
         centre_1_x: Real
         centre_1_y: Real
         centre_2_x: Real
@@ -208,25 +201,25 @@ class ArrayPrograms(Programs):
         rod_1_y = y - centre_1_y
         rod_2_x = x - centre_2_x
         rod_2_y = y - centre_2_y
-        type2_arms_aligned = k.part_of_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+        type2_arms_aligned = k.part_of_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: whole turns added
         open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(k.offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: whole turns added
         # a1: its effective length is too short
         # a1: out of reach
         require(
             status,
-            ((effective_a1 > k.link_length_1_times_shortest_link) & (absolute(cos_swing_a1) <= 1.0000000000005)),
+            (effective_a1 > k.link_length_1_times_shortest_link) & (absolute(cos_swing_a1) <= 1.0000000000005),
             Status.UNREACHABLE,
         )
         # a2: its effective length is too short
         # a2: out of reach
         require(
             status,
-            ((effective_a2 > k.link_length_5_times_shortest_link) & (absolute(cos_swing_a2) <= 1.0000000000005)),
+            (effective_a2 > k.link_length_5_times_shortest_link) & (absolute(cos_swing_a2) <= 1.0000000000005),
             Status.UNREACHABLE,
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate

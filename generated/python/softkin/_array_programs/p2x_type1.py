@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Programs, absolute, passed, require, root, select
+from softkin._array import Programs, absolute, passed, reasonable, require, root, select
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -26,51 +24,51 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
         a1 = axis_a1 - k.offset_a1
         pivot_1_x = a1 + k.tcp_offset_1  # rod 1: centre about which it swings
         a2 = axis_a2 - k.offset_a2
         pivot_2_x = a2 - k.tcp_offset_2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        normal_square = k.centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x  # squared length of the normal
+        # squared length of the normal
+        normal_square = k.centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x
         normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
         between_centres = root(normal_divisor)  # distance between the centres
-        one_by_normal_square = 1.0/normal_divisor
+        one_by_normal_square = 1.0 / normal_divisor
         # square of the height over the line of the centres
         height_square = (
-            0.25*(between_centres - k.arm_length_1_plus_arm_length_2)
-            *(k.arm_length_1_minus_arm_length_2 + between_centres)
-            *(k.arm_length_1_minus_arm_length_2 - between_centres)
-            *(k.arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square
+            0.25
+            * (between_centres - k.arm_length_1_plus_arm_length_2)
+            * (k.arm_length_1_minus_arm_length_2 + between_centres)
+            * (k.arm_length_1_minus_arm_length_2 - between_centres)
+            * (k.arm_length_1_plus_arm_length_2 + between_centres)
+            * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
-        foot_fraction = 0.5*(normal_divisor + k.part_of_foot_fraction)*one_by_normal_square
-        foot_x = centre_1_to_2_x*foot_fraction  # foot of the perpendicular, seen from centre 1
+        foot_fraction = 0.5 * (normal_divisor + k.part_of_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*k.assembly_sign
-        x = foot_x + pivot_1_x - k.centre_1_to_2_y*height_by_normal
-        foot_y = k.centre_1_to_2_y*foot_fraction
-        y = foot_y + k.rail_y_1 + centre_1_to_2_x*height_by_normal
-        branch_carriage_1 = (x - pivot_1_x)/k.arm_length_1
-        branch_carriage_2 = (pivot_2_x - x)/k.arm_length_2
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        x = foot_x + pivot_1_x - k.centre_1_to_2_y * height_by_normal
+        foot_y = k.centre_1_to_2_y * foot_fraction
+        y = foot_y + k.rail_y_1 + centre_1_to_2_x * height_by_normal
+        branch_carriage_1 = (x - pivot_1_x) / k.arm_length_1
+        branch_carriage_2 = (pivot_2_x - x) / k.arm_length_2
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
             status,
-            ((normal_square > k.part_of_normal_divisor) & (height_square >= -k.arm_length_1_squared_times_rounding)),
+            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.arm_length_1_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (
-            (
-                (x, y, 0.0),
-                ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-                (branch_carriage_1, branch_carriage_2),
-            ),
-            status,
-        )
+            (x, y, 0.0),
+            ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            (branch_carriage_1, branch_carriage_2),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -78,20 +76,20 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(x, y, z), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         span_1_y = y - k.rail_y_1
-        radicand_a1 = (k.arm_length_1 + span_1_y)*(k.arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
+        radicand_a1 = (k.arm_length_1 + span_1_y) * (k.arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         span_2_y = y - k.rail_y_2
-        radicand_a2 = (k.arm_length_2 + span_2_y)*(k.arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
+        radicand_a2 = (k.arm_length_2 + span_2_y) * (k.arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         span_1_x = x - k.tcp_offset_1  # rod 1: known part of its vector
-        a1 = span_1_x - root(radicand_a1)*sigma_carriage_1
+        a1 = span_1_x - root(radicand_a1) * sigma_carriage_1
         rod_1_x = span_1_x - a1
         span_2_x = k.tcp_offset_2 + x  # rod 2: known part of its vector
-        a2 = span_2_x + root(radicand_a2)*sigma_carriage_2
+        a2 = span_2_x + root(radicand_a2) * sigma_carriage_2
         rod_2_x = span_2_x - a2
-        type2_arms_aligned = k.part_of_type2_arms_aligned*(rod_1_x*span_2_y - rod_2_x*span_1_y)
+        type2_arms_aligned = k.part_of_type2_arms_aligned * (rod_1_x * span_2_y - rod_2_x * span_1_y)
         axis_a1 = a1 + k.offset_a1
         axis_a2 = a2 + k.offset_a2
         # rod 1 cannot reach

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Programs, absolute, passed, require, root
+from softkin._array import Programs, absolute, passed, reasonable, require, root
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -26,13 +24,13 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
         a1 = axis_a1 - k.offset_a1
         a2 = axis_a2 - k.offset_a2
-        pivot_1_x = -0.5*(a1 + k.tcp_link_distance - a2)  # rod 1: centre about which it swings
-        radicand_y = (k.arm_length + pivot_1_x)*(k.arm_length - pivot_1_x)  # quadratic equation for y: rod 1
-        x = 0.5*(a1 + a2)  # x from the x equation, which is linear in it
-        y = root(radicand_y)*k.assembly_sign
+        pivot_1_x = -0.5 * (a1 + k.tcp_link_distance - a2)  # rod 1: centre about which it swings
+        radicand_y = (k.arm_length + pivot_1_x) * (k.arm_length - pivot_1_x)  # quadratic equation for y: rod 1
+        x = 0.5 * (a1 + a2)  # x from the x equation, which is linear in it
+        y = root(radicand_y) * k.assembly_sign
         # the mirror that the machine does not have
         require(status, pivot_1_x >= -k.machine_scale_times_rounding, Status.IMPOSSIBLE)
         # rod 1 cannot reach
@@ -40,21 +38,21 @@ class ArrayPrograms(Programs):
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(x, y, z), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
-        radicand_a2 = (k.arm_length + y)*(k.arm_length - y)  # quadratic equation for a2: rod 1 (through x)
-        type2_flat = k.assembly_sign_by_arm_length*y
+        radicand_a2 = (k.arm_length + y) * (k.arm_length - y)  # quadratic equation for a2: rod 1 (through x)
+        type2_flat = k.assembly_sign_by_arm_length * y
         middle_a2 = k.span_1_x + x
         a2 = middle_a2 + root(radicand_a2)
-        a1 = 2.0*x - a2  # a1 from the x equation, which is linear in it
+        a1 = 2.0 * x - a2  # a1 from the x equation, which is linear in it
         axis_a1 = a1 + k.offset_a1
         axis_a2 = a2 + k.offset_a2
         # rod 1 (through x) cannot reach

@@ -14,6 +14,7 @@ from softkin._array import (
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -29,9 +30,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -39,19 +38,19 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(axis_c) <= 1e9) & (absolute(axis_r) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(axis_c, axis_r), Status.BAD_INPUT)
         r = axis_r - k.offset_r
-        c = DEGREE*(axis_c - k.offset_c)
+        c = DEGREE * (axis_c - k.offset_c)
         cos_c = cos(c)
-        x = r*cos_c
+        x = r * cos_c
         sin_c = sin(c)
-        y = r*sin_c
+        y = r * sin_c
         # R where the machine has no pose
         require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
         return ((x, y, 0.0), ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -60,30 +59,23 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(ref_c) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_c, x, y, z), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
-        radius_c = sqrt(x*x + y*y)  # polar coordinates: the radius at angle c
+        radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
-            free_c = (ref_c - k.offset_c)*DEGREE
+            free_c = (ref_c - k.offset_c) * DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
             return (direction_x_c, direction_y_c)
 
         # in the singularity: the angle of the reference
         direction_x_c, direction_y_c = elsewhere(
-            radius_c > k.machine_scale_times_free_angle,
-            (x, y),
-            elsewhere_direction_x_c,
-            (ref_c,),
+            radius_c > k.machine_scale_times_free_angle, (x, y), elsewhere_direction_x_c, (ref_c,)
         )
         open_c = select(k.single_c, k.mid_c, ref_c)  # C: without a commanded turn, the value nearest to this
-        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
+        near_c = select(turn_c != 0, 360.0 * select(turn_c > 0, turn_c - 1, turn_c), open_c)
         axis_c = nearest_period(k.offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: whole turns added
         axis_r = k.offset_r + radius_c
         return (axis_c, axis_r), status

@@ -14,6 +14,7 @@ from softkin._array import (
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -30,9 +31,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -40,50 +39,43 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
-            Status.BAD_INPUT,
-        )
-        q1 = DEGREE*(axis_a1 - k.offset_a1)
+        require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
+        q1 = DEGREE * (axis_a1 - k.offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
-        q2 = DEGREE*(axis_a2 - k.offset_a2)
-        q3 = DEGREE*(axis_a3 - k.offset_a3)
+        q2 = DEGREE * (axis_a2 - k.offset_a2)
+        q3 = DEGREE * (axis_a3 - k.offset_a3)
         q2_plus_q3 = q2 + q3
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1*sin_q23
+        r11_at_q23 = -cos_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1*cos_q23
-        x_at_q2 = k.a1*cos_q1
+        r12_at_q23 = -cos_q1 * cos_q23
+        x_at_q2 = k.a1 * cos_q1
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + k.a2*r11_at_q2
-        x = x_at_q3 + k.a3*r11_at_q23 + k.d3*sin_q1 - k.d4*r12_at_q23
-        r21_at_q23 = -sin_q1*sin_q23
-        r22_at_q23 = -cos_q23*sin_q1
-        y_at_q2 = k.a1*sin_q1
-        r21_at_q2 = -sin_q1*sin_q2
-        y_at_q3 = y_at_q2 + k.a2*r21_at_q2
-        y = y_at_q3 + k.a3*r21_at_q23 - k.d3*cos_q1 - k.d4*r22_at_q23
+        r11_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r11_at_q2
+        x = x_at_q3 + k.a3 * r11_at_q23 + k.d3 * sin_q1 - k.d4 * r12_at_q23
+        r21_at_q23 = -sin_q1 * sin_q23
+        r22_at_q23 = -cos_q23 * sin_q1
+        y_at_q2 = k.a1 * sin_q1
+        r21_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r21_at_q2
+        y = y_at_q3 + k.a3 * r21_at_q23 - k.d3 * cos_q1 - k.d4 * r22_at_q23
         cos_q2 = cos(q2)
-        z_at_q3 = k.d1 + k.a2*cos_q2
-        z = z_at_q3 + k.a3*cos_q23 + k.d4*sin_q23
-        branch_arm = (x*cos_q1 + y*sin_q1)/k.machine_scale
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z = z_at_q3 + k.a3 * cos_q23 + k.d4 * sin_q23
+        branch_arm = (x * cos_q1 + y * sin_q1) / k.machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = k.d4_by_effective_q3_2*cos_q3 - k.a3_by_effective_q3_2*sin_q3
+        branch_elbow = k.d4_by_effective_q3_2 * cos_q3 - k.a3_by_effective_q3_2 * sin_q3
         return (
-            (
-                (x, y, z),
-                ((r11_at_q23, sin_q1, -r12_at_q23), (r21_at_q23, -cos_q1, -r22_at_q23), (cos_q23, 0.0, sin_q23)),
-                (branch_arm, branch_elbow),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_q23, sin_q1, -r12_at_q23), (r21_at_q23, -cos_q1, -r22_at_q23), (cos_q23, 0.0, sin_q23)),
+            (branch_arm, branch_elbow),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -93,31 +85,24 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        distance_q1 = sqrt(x*x + y*y)  # distance of the point from the axis of q1
+        require(status, reasonable(ref_a1, ref_a2, ref_a3, x, y, z), Status.BAD_INPUT)
+        distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
-        ahead_squared_q1 = (distance_q1 - k.d3)*(k.d3 + distance_q1)
-        distance_q1_squared = distance_q1*distance_q1
+        ahead_squared_q1 = (distance_q1 - k.d3) * (k.d3 + distance_q1)
+        distance_q1_squared = distance_q1 * distance_q1
         wrist_y_from_q1 = z - k.d1  # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1
+        wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_before_q1_for_q3 = root(ahead_squared_q1)*sigma_arm
+        ahead_q1_before_q1_for_q3 = root(ahead_squared_q1) * sigma_arm
 
         def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1)*DEGREE
+            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
             return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
-        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - k.d3*y)/distance_q1_squared
-        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + k.d3*x)/distance_q1_squared
+        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - k.d3 * y) / distance_q1_squared
+        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + k.d3 * x) / distance_q1_squared
         # rotation by q1 that points the arm at the point; in the singularity: the angle of the reference
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > k.machine_scale_times_free_angle,
@@ -127,44 +112,61 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_ahead_q1(
-            ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real,
-            wrist_y_from_q1_squared: Real, x: Real, y: Real,
+            ahead_q1_before_q1_for_q3: Real,
+            cos_q1_before_q1_for_q3: Real,
+            sin_q1_before_q1_for_q3: Real,
+            wrist_y_from_q1_squared: Real,
+            x: Real,
+            y: Real,
         ) -> Reals:
             wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - k.a1
             # q3 has solutions where this is within its bound
             value_q1_for_q3 = (
-                wrist_y_from_q1_squared + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+                wrist_y_from_q1_squared
+                + wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
                 - k.a2_squared_plus_effective_q3_2_squared
             )
 
             def elsewhere_ahead_q1(
-                ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real,
-                value_q1_for_q3: Real, wrist_x_from_q1_before_q1_for_q3: Real, x: Real, y: Real,
+                ahead_q1_before_q1_for_q3: Real,
+                cos_q1_before_q1_for_q3: Real,
+                sin_q1_before_q1_for_q3: Real,
+                value_q1_for_q3: Real,
+                wrist_x_from_q1_before_q1_for_q3: Real,
+                x: Real,
+                y: Real,
             ) -> Reals:
-                rate_q1_for_q3 = -k.twice_d3*wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
+                rate_q1_for_q3 = -k.twice_d3 * wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
                 excess_q1_for_q3 = select(
-                    value_q1_for_q3 > 0.0, value_q1_for_q3 - k.size_q1_for_q3_2, k.size_q1_for_q3_2 + value_q1_for_q3,
+                    value_q1_for_q3 > 0.0, value_q1_for_q3 - k.size_q1_for_q3_2, k.size_q1_for_q3_2 + value_q1_for_q3
                 )
                 # turn of q1 to the bound, to first order
                 turn_q1_for_q3 = select(
-                    absolute(rate_q1_for_q3) > k.size_q1_for_q3_2_times_rounding, -excess_q1_for_q3/rate_q1_for_q3, 0.0,
+                    absolute(rate_q1_for_q3) > k.size_q1_for_q3_2_times_rounding,
+                    -excess_q1_for_q3 / rate_q1_for_q3,
+                    0.0,
                 )
-                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
-                one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3
-                turned_cos_q1_for_q3 = (
-                    one_by_turned_length_q1_for_q3*(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)
+                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3 * turn_q1_for_q3)
+                one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
+                turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                    cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
                 )
-                turned_sin_q1_for_q3 = (
-                    one_by_turned_length_q1_for_q3*(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)
+                turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
+                    sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
                 )
                 # residual of the equation of q1
-                turned_cost_q1_for_q3 = absolute(k.d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
+                turned_cost_q1_for_q3 = absolute(k.d3 + turned_cos_q1_for_q3 * y - turned_sin_q1_for_q3 * x)
 
                 def elsewhere_ahead_q1(
-                    ahead_q1_before_q1_for_q3: Real, one_by_turned_length_q1_for_q3: Real, turn_q1_for_q3: Real,
-                    turned_cos_q1_for_q3: Real, turned_sin_q1_for_q3: Real,
+                    ahead_q1_before_q1_for_q3: Real,
+                    one_by_turned_length_q1_for_q3: Real,
+                    turn_q1_for_q3: Real,
+                    turned_cos_q1_for_q3: Real,
+                    turned_sin_q1_for_q3: Real,
                 ) -> Reals:
-                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - k.d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3
+                    turned_ahead_q1_for_q3 = (
+                        ahead_q1_before_q1_for_q3 - k.d3 * turn_q1_for_q3
+                    ) * one_by_turned_length_q1_for_q3
                     return (turned_ahead_q1_for_q3, turned_cos_q1_for_q3, turned_sin_q1_for_q3)
 
                 # turned, within rounding, to where q3 has a solution
@@ -173,7 +175,10 @@ class ArrayPrograms(Programs):
                     (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
                     elsewhere_ahead_q1,
                     (
-                        ahead_q1_before_q1_for_q3, one_by_turned_length_q1_for_q3, turn_q1_for_q3, turned_cos_q1_for_q3,
+                        ahead_q1_before_q1_for_q3,
+                        one_by_turned_length_q1_for_q3,
+                        turn_q1_for_q3,
+                        turned_cos_q1_for_q3,
                         turned_sin_q1_for_q3,
                     ),
                 )
@@ -185,8 +190,13 @@ class ArrayPrograms(Programs):
                 (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
                 elsewhere_ahead_q1,
                 (
-                    ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, value_q1_for_q3,
-                    wrist_x_from_q1_before_q1_for_q3, x, y,
+                    ahead_q1_before_q1_for_q3,
+                    cos_q1_before_q1_for_q3,
+                    sin_q1_before_q1_for_q3,
+                    value_q1_for_q3,
+                    wrist_x_from_q1_before_q1_for_q3,
+                    x,
+                    y,
                 ),
             )
             return (ahead_q1, cos_q1, sin_q1)
@@ -197,37 +207,41 @@ class ArrayPrograms(Programs):
             (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
             elsewhere_ahead_q1,
             (
-                ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, wrist_y_from_q1_squared,
-                x, y,
+                ahead_q1_before_q1_for_q3,
+                cos_q1_before_q1_for_q3,
+                sin_q1_before_q1_for_q3,
+                wrist_y_from_q1_squared,
+                x,
+                y,
             ),
         )
         wrist_x_from_q1 = ahead_q1 - k.a1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1)
+        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
         # law of cosines for q3: x_from_q1² + y_from_q1²: 1 - cosine, times a scale
-        one_less_cos_q3 = (k.a2_plus_effective_q3_2 + reach)*(k.a2_plus_effective_q3_2 - reach)
+        one_less_cos_q3 = (k.a2_plus_effective_q3_2 + reach) * (k.a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - k.a2_minus_effective_q3_2)*(k.a2_minus_effective_q3_2 + reach)
+        one_plus_cos_q3 = (reach - k.a2_minus_effective_q3_2) * (k.a2_minus_effective_q3_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_q3 = one_less_cos_q3 + one_plus_cos_q3
         divisor_of_cos_q3 = select(sum_of_cos_q3 > 0.0, sum_of_cos_q3, 1.0)
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
-        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/divisor_of_cos_q3
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0 * root(sine_square_q3) * sigma_elbow / divisor_of_cos_q3
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - k.offset_a2)*DEGREE
+            free_a2 = (ref_a2 - k.offset_a2) * DEGREE
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
             return (direction_x_q2, direction_y_q2)
 
-        arm_along_q2 = -k.effective_q3_2*sin_swing_q3
-        arm_across_q2 = k.a2 + k.effective_q3_2*cos_swing_q3
-        direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-        direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        arm_along_q2 = -k.effective_q3_2 * sin_swing_q3
+        arm_across_q2 = k.a2 + k.effective_q3_2 * cos_swing_q3
+        direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
+        direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
         # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_q2, direction_y_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
@@ -236,17 +250,17 @@ class ArrayPrograms(Programs):
             (ref_a2,),
         )
         open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: whole turns added
         axis_a2 = nearest_period(k.offset_a2 + degrees(direction_y_q2, direction_x_q2), near_a2)
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_q3 = k.a3_by_effective_q3_2*cos_swing_q3 - k.d4_by_effective_q3_2*sin_swing_q3
-        sin_q3 = k.a3_by_effective_q3_2*sin_swing_q3 + k.d4_by_effective_q3_2*cos_swing_q3
+        cos_q3 = k.a3_by_effective_q3_2 * cos_swing_q3 - k.d4_by_effective_q3_2 * sin_swing_q3
+        sin_q3 = k.a3_by_effective_q3_2 * sin_swing_q3 + k.d4_by_effective_q3_2 * cos_swing_q3
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: whole turns added
         # q1: out of reach
-        require(status, ahead_squared_q1 >= -1e-12*distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
+        require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
         require(status, absolute(cos_swing_q3) <= 1.0000000000005, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3), status

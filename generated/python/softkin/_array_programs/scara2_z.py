@@ -14,6 +14,7 @@ from softkin._array import (
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -30,9 +31,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -40,29 +39,26 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_z) <= 1e9),
-            Status.BAD_INPUT,
-        )
-        a1 = DEGREE*(axis_a1 - k.offset_a1)
-        a2 = DEGREE*(axis_a2 - k.offset_a2)
+        require(status, reasonable(axis_a1, axis_a2, axis_z), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
         a1_plus_a2 = a1 + a2
         cos_a12 = cos(a1_plus_a2)
         cos_a1 = cos(a1)
-        x = k.arm_length_1*cos_a1 + k.arm_length_2*cos_a12
+        x = k.arm_length_1 * cos_a1 + k.arm_length_2 * cos_a12
         sin_a12 = sin(a1_plus_a2)
         sin_a1 = sin(a1)
-        y = k.arm_length_1*sin_a1 + k.arm_length_2*sin_a12
+        y = k.arm_length_1 * sin_a1 + k.arm_length_2 * sin_a12
         joint_z = axis_z - k.offset_z
         sin_a2 = sin(a2)
         return (
-            ((x, y, joint_z), ((cos_a12, -sin_a12, 0.0), (sin_a12, cos_a12, 0.0), (0.0, 0.0, 1.0)), (sin_a2,)),
-            status,
-        )
+            (x, y, joint_z),
+            ((cos_a12, -sin_a12, 0.0), (sin_a12, cos_a12, 0.0), (0.0, 0.0, 1.0)),
+            (sin_a2,),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -72,36 +68,29 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(x) <= 1e9) & (absolute(y) <= 1e9)
-                & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        reach = sqrt(x*x + y*y)  # distance that the remaining links must span
+        require(status, reasonable(ref_a1, ref_a2, x, y, z), Status.BAD_INPUT)
+        reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2 = (k.arm_length_1_plus_arm_length_2 + reach)*(k.arm_length_1_plus_arm_length_2 - reach)
+        one_less_cos_a2 = (k.arm_length_1_plus_arm_length_2 + reach) * (k.arm_length_1_plus_arm_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - k.arm_length_1_minus_arm_length_2)*(k.arm_length_1_minus_arm_length_2 + reach)
+        one_plus_cos_a2 = (reach - k.arm_length_1_minus_arm_length_2) * (k.arm_length_1_minus_arm_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0 * root(sine_square_a2) * sigma_elbow / divisor_of_cos_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1)*DEGREE
+            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
             return (direction_x_a1, direction_y_a1)
 
-        arm_along_a1 = k.arm_length_1 + k.arm_length_2*cos_a2
-        arm_across_a1 = k.arm_length_2*sin_a2
-        direction_x_a1 = arm_across_a1*y + arm_along_a1*x
-        direction_y_a1 = arm_along_a1*y - arm_across_a1*x
+        arm_along_a1 = k.arm_length_1 + k.arm_length_2 * cos_a2
+        arm_across_a1 = k.arm_length_2 * sin_a2
+        direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+        direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > k.machine_scale_times_free_angle,
@@ -110,11 +99,11 @@ class ArrayPrograms(Programs):
             (ref_a1,),
         )
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         # A1: whole turns added
         axis_a1 = nearest_period(k.offset_a1 + degrees(direction_y_a1, direction_x_a1), near_a1)
         open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(k.offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: whole turns added
         axis_z = k.offset_z + z
         # a2: out of reach

@@ -14,6 +14,7 @@ from softkin._array import (
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -30,9 +31,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -40,36 +39,26 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9)
-                & (absolute(axis_a4) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        a2 = DEGREE*(axis_a2 - k.offset_a2)
-        a3 = DEGREE*(axis_a3 - k.offset_a3)
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4), Status.BAD_INPUT)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
         a2_plus_a3 = a2 + a3
-        a4 = DEGREE*(axis_a4 - k.offset_a4)
+        a4 = DEGREE * (axis_a4 - k.offset_a4)
         a2_plus_a3_plus_a4 = a2_plus_a3 + a4
         cos_a234 = cos(a2_plus_a3_plus_a4)
         cos_a2 = cos(a2)
         cos_a23 = cos(a2_plus_a3)
-        x = k.link_length_1*cos_a2 + k.link_length_2*cos_a23 + k.link_length_3*cos_a234
+        x = k.link_length_1 * cos_a2 + k.link_length_2 * cos_a23 + k.link_length_3 * cos_a234
         sin_a234 = sin(a2_plus_a3_plus_a4)
         sin_a2 = sin(a2)
         sin_a23 = sin(a2_plus_a3)
-        y = k.link_length_1*sin_a2 + k.link_length_2*sin_a23 + k.link_length_3*sin_a234
+        y = k.link_length_1 * sin_a2 + k.link_length_2 * sin_a23 + k.link_length_3 * sin_a234
         a1 = axis_a1 - k.offset_a1
         sin_a3 = sin(a3)
-        return (
-            ((x, y, a1), ((cos_a234, -sin_a234, 0.0), (sin_a234, cos_a234, 0.0), (0.0, 0.0, 1.0)), (sin_a3,)),
-            status,
-        )
+        return ((x, y, a1), ((cos_a234, -sin_a234, 0.0), (sin_a234, cos_a234, 0.0), (0.0, 0.0, 1.0)), (sin_a3,)), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -80,46 +69,39 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9) & (absolute(ref_a4) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_a2, ref_a3, ref_a4, x, y, z), Status.BAD_INPUT)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
-        cos_heading = heading_along/heading_divisor
-        wrist_x = x - k.link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
-        sin_heading = heading_across/heading_divisor
-        wrist_y = y - k.link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
+        cos_heading = heading_along / heading_divisor
+        wrist_x = x - k.link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
+        sin_heading = heading_across / heading_divisor
+        wrist_y = y - k.link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
         # law of cosines for a3: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a3 = (k.link_length_1_plus_link_length_2 + reach)*(k.link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a3 = (k.link_length_1_plus_link_length_2 + reach) * (k.link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (reach - k.link_length_1_minus_link_length_2)*(k.link_length_1_minus_link_length_2 + reach)
+        one_plus_cos_a3 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
         divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         axis_a1 = k.offset_a1 + z
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
-        sin_a3 = 2.0*root(sine_square_a3)*sigma_elbow/divisor_of_cos_a3
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
+        sin_a3 = 2.0 * root(sine_square_a3) * sigma_elbow / divisor_of_cos_a3
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - k.offset_a2)*DEGREE
+            free_a2 = (ref_a2 - k.offset_a2) * DEGREE
             direction_x_a2 = cos(free_a2)
             direction_y_a2 = sin(free_a2)
             return (direction_x_a2, direction_y_a2)
 
-        arm_along_a2 = k.link_length_1 + k.link_length_2*cos_a3
-        arm_across_a2 = k.link_length_2*sin_a3
-        direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
-        direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
+        arm_along_a2 = k.link_length_1 + k.link_length_2 * cos_a3
+        arm_across_a2 = k.link_length_2 * sin_a3
+        direction_x_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
+        direction_y_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
         # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a2, direction_y_a2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
@@ -129,17 +111,17 @@ class ArrayPrograms(Programs):
         )
         angle_a2 = atan2(direction_y_a2, direction_x_a2)
         open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
-        axis_a2 = nearest_period(k.offset_a2 + angle_a2/DEGREE, near_a2)  # A2: whole turns added
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        axis_a2 = nearest_period(k.offset_a2 + angle_a2 / DEGREE, near_a2)  # A2: whole turns added
         angle_a3 = atan2(sin_a3, cos_a3)
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
-        axis_a3 = nearest_period(k.offset_a3 + angle_a3/DEGREE, near_a3)  # A3: whole turns added
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        axis_a3 = nearest_period(k.offset_a3 + angle_a3 / DEGREE, near_a3)  # A3: whole turns added
         angle_heading = atan2(sin_heading, cos_heading)
         open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
-        near_a4 = select(turn_a4 != 0, 360.0*select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
+        near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # a4 from the sum a234 of angles about parallel axes; A4: whole turns added
-        axis_a4 = nearest_period(k.offset_a4 + (angle_heading - angle_a2 - angle_a3)/DEGREE, near_a4)
+        axis_a4 = nearest_period(k.offset_a4 + (angle_heading - angle_a2 - angle_a3) / DEGREE, near_a4)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # a3: out of reach

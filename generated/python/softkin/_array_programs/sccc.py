@@ -14,6 +14,7 @@ from softkin._array import (
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -30,9 +31,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -40,34 +39,31 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
-            Status.BAD_INPUT,
-        )
-        a1 = DEGREE*(axis_a1 - k.offset_a1)
-        motor_a2 = DEGREE*(axis_a2 - k.offset_a2)
-        a2 = motor_a2 + a1*k.coupling_12
+        require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        motor_a2 = DEGREE * (axis_a2 - k.offset_a2)
+        a2 = motor_a2 + a1 * k.coupling_12
         a1_plus_a2 = a1 + a2
-        motor_a3 = DEGREE*(axis_a3 - k.offset_a3)
-        a3 = motor_a3 + a1*k.coupling_13 + k.coupling_23*motor_a2
+        motor_a3 = DEGREE * (axis_a3 - k.offset_a3)
+        a3 = motor_a3 + a1 * k.coupling_13 + k.coupling_23 * motor_a2
         a1_plus_a2_plus_a3 = a1_plus_a2 + a3
         cos_a123 = cos(a1_plus_a2_plus_a3)
         cos_a1 = cos(a1)
         cos_a12 = cos(a1_plus_a2)
-        x = k.link_length_1*cos_a1 + k.link_length_2*cos_a12 + k.link_length_3*cos_a123
+        x = k.link_length_1 * cos_a1 + k.link_length_2 * cos_a12 + k.link_length_3 * cos_a123
         sin_a123 = sin(a1_plus_a2_plus_a3)
         sin_a1 = sin(a1)
         sin_a12 = sin(a1_plus_a2)
-        y = k.link_length_1*sin_a1 + k.link_length_2*sin_a12 + k.link_length_3*sin_a123
+        y = k.link_length_1 * sin_a1 + k.link_length_2 * sin_a12 + k.link_length_3 * sin_a123
         sin_a2 = sin(a2)
         return (
-            ((x, y, 0.0), ((cos_a123, -sin_a123, 0.0), (sin_a123, cos_a123, 0.0), (0.0, 0.0, 1.0)), (sin_a2,)),
-            status,
-        )
+            (x, y, 0.0),
+            ((cos_a123, -sin_a123, 0.0), (sin_a123, cos_a123, 0.0), (0.0, 0.0, 1.0)),
+            (sin_a2,),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -78,45 +74,38 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_a1, ref_a2, ref_a3, x, y, z), Status.BAD_INPUT)
         # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
         heading_along = r11 + r22
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
-        cos_heading = heading_along/heading_divisor
-        wrist_x = x - k.link_length_3*cos_heading  # coordinate of the point that the remaining links must reach
-        sin_heading = heading_across/heading_divisor
-        wrist_y = y - k.link_length_3*sin_heading  # coordinate of the point that the remaining links must reach
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # distance that the remaining links must span
+        cos_heading = heading_along / heading_divisor
+        wrist_x = x - k.link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
+        sin_heading = heading_across / heading_divisor
+        wrist_y = y - k.link_length_3 * sin_heading  # coordinate of the point that the remaining links must reach
+        reach = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance that the remaining links must span
         # law of cosines for a2: x² + y²: 1 - cosine, times a scale
-        one_less_cos_a2 = (k.link_length_1_plus_link_length_2 + reach)*(k.link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (k.link_length_1_plus_link_length_2 + reach) * (k.link_length_1_plus_link_length_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (reach - k.link_length_1_minus_link_length_2)*(k.link_length_1_minus_link_length_2 + reach)
+        one_plus_cos_a2 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
-        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/divisor_of_cos_a2
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_a2 = 2.0 * root(sine_square_a2) * sigma_elbow / divisor_of_cos_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1)*DEGREE
+            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
             direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
             return (direction_x_a1, direction_y_a1)
 
-        arm_along_a1 = k.link_length_1 + k.link_length_2*cos_a2
-        arm_across_a1 = k.link_length_2*sin_a2
-        direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
-        direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
+        arm_along_a1 = k.link_length_1 + k.link_length_2 * cos_a2
+        arm_across_a1 = k.link_length_2 * sin_a2
+        direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
+        direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
         # rotation by a1 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > k.machine_scale_times_free_angle,
@@ -126,45 +115,45 @@ class ArrayPrograms(Programs):
         )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
-        axis_a1 = nearest_period(k.offset_a1 + angle_a1/DEGREE, near_a1)  # A1: whole turns added
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        axis_a1 = nearest_period(k.offset_a1 + angle_a1 / DEGREE, near_a1)  # A1: whole turns added
         angle_a2 = atan2(sin_a2, cos_a2)
-        motor_a1 = DEGREE*(axis_a1 - k.offset_a1)
-        part_of_axis_a2 = k.offset_a2 - motor_a1*k.part_of_open_a2
+        motor_a1 = DEGREE * (axis_a1 - k.offset_a1)
+        part_of_axis_a2 = k.offset_a2 - motor_a1 * k.part_of_open_a2
 
         def elsewhere_near_a2(part_of_axis_a2: Real, ref_a1: Real, ref_a2: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1)*DEGREE
-            ref_motor_a2 = (ref_a2 - k.offset_a2)*DEGREE
-            free_a2 = ref_motor_a2 + k.coupling_12*free_a1
+            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
+            ref_motor_a2 = (ref_a2 - k.offset_a2) * DEGREE
+            free_a2 = ref_motor_a2 + k.coupling_12 * free_a1
             # A2: without a commanded turn, the value nearest to this
-            open_a2 = select(k.single_a2, k.mid_a2, part_of_axis_a2 + free_a2/DEGREE)
+            open_a2 = select(k.single_a2, k.mid_a2, part_of_axis_a2 + free_a2 / DEGREE)
             return (open_a2,)
 
-        near_a2 = 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2)
+        near_a2 = 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2)
         (near_a2,) = elsewhere(turn_a2 != 0, (near_a2,), elsewhere_near_a2, (part_of_axis_a2, ref_a1, ref_a2))
-        axis_a2 = nearest_period(part_of_axis_a2 + angle_a2/DEGREE, near_a2)  # A2: whole turns added
+        axis_a2 = nearest_period(part_of_axis_a2 + angle_a2 / DEGREE, near_a2)  # A2: whole turns added
         angle_heading = atan2(sin_heading, cos_heading)
-        motor_a2 = DEGREE*(axis_a2 - k.offset_a2)
-        part_of_axis_a3 = k.coupling_13*motor_a1 + k.coupling_23*motor_a2
+        motor_a2 = DEGREE * (axis_a2 - k.offset_a2)
+        part_of_axis_a3 = k.coupling_13 * motor_a1 + k.coupling_23 * motor_a2
 
         def elsewhere_near_a3(part_of_axis_a3: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real) -> Reals:
-            free_a1 = (ref_a1 - k.offset_a1)*DEGREE
-            ref_motor_a2 = (ref_a2 - k.offset_a2)*DEGREE
+            free_a1 = (ref_a1 - k.offset_a1) * DEGREE
+            ref_motor_a2 = (ref_a2 - k.offset_a2) * DEGREE
             open_a3: Real
             if k.single_a3:
                 open_a3 = k.mid_a3  # A3: without a commanded turn, the value nearest to this
             else:
-                ref_motor_a3 = (ref_a3 - k.offset_a3)*DEGREE
-                free_a3 = ref_motor_a3 + k.coupling_13*free_a1 + k.coupling_23*ref_motor_a2
+                ref_motor_a3 = (ref_a3 - k.offset_a3) * DEGREE
+                free_a3 = ref_motor_a3 + k.coupling_13 * free_a1 + k.coupling_23 * ref_motor_a2
                 # A3: without a commanded turn, the value nearest to this
-                open_a3 = k.offset_a3 + (free_a3 - part_of_axis_a3)/DEGREE
+                open_a3 = k.offset_a3 + (free_a3 - part_of_axis_a3) / DEGREE
             return (open_a3,)
 
-        near_a3 = 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3)
+        near_a3 = 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3)
         (near_a3,) = elsewhere(turn_a3 != 0, (near_a3,), elsewhere_near_a3, (part_of_axis_a3, ref_a1, ref_a2, ref_a3))
         # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3 = nearest_period(
-            k.offset_a3 + (angle_heading - angle_a1 - angle_a2 - part_of_axis_a3)/DEGREE, near_a3,
+            k.offset_a3 + (angle_heading - angle_a1 - angle_a2 - part_of_axis_a3) / DEGREE, near_a3
         )
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
@@ -185,23 +174,15 @@ class ArrayPrograms(Programs):
         require(status, (axis_a2 >= k.lowest_a2) & (axis_a2 <= k.highest_a2), Status.UNREACHABLE)
         # limits of A3
         require(status, (axis_a3 >= k.lowest_a3) & (axis_a3 <= k.highest_a3), Status.UNREACHABLE)
-        a1 = DEGREE*(axis_a1 - k.offset_a1)
-        motor_a2 = DEGREE*(axis_a2 - k.offset_a2)
-        a2 = motor_a2 + a1*k.coupling_12
-        value_joint_2 = a2/DEGREE  # joint 2
-        motor_a3 = DEGREE*(axis_a3 - k.offset_a3)
-        a3 = motor_a3 + a1*k.coupling_13 + k.coupling_23*motor_a2
-        value_joint_3 = a3/DEGREE  # joint 3
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        motor_a2 = DEGREE * (axis_a2 - k.offset_a2)
+        a2 = motor_a2 + a1 * k.coupling_12
+        value_joint_2 = a2 / DEGREE  # joint 2
+        motor_a3 = DEGREE * (axis_a3 - k.offset_a3)
+        a3 = motor_a3 + a1 * k.coupling_13 + k.coupling_23 * motor_a2
+        value_joint_3 = a3 / DEGREE  # joint 3
         # limits of joint 2
-        require(
-            status,
-            (value_joint_2 >= k.lowest_joint_2) & (value_joint_2 <= k.highest_joint_2),
-            Status.UNREACHABLE,
-        )
+        require(status, (value_joint_2 >= k.lowest_joint_2) & (value_joint_2 <= k.highest_joint_2), Status.UNREACHABLE)
         # limits of joint 3
-        require(
-            status,
-            (value_joint_3 >= k.lowest_joint_3) & (value_joint_3 <= k.highest_joint_3),
-            Status.UNREACHABLE,
-        )
+        require(status, (value_joint_3 >= k.lowest_joint_3) & (value_joint_3 <= k.highest_joint_3), Status.UNREACHABLE)
         return status

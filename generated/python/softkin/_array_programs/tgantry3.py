@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Programs, absolute, passed, require
+from softkin._array import Programs, passed, reasonable, require
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -26,27 +24,23 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_z) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_a, axis_b, axis_z), Status.BAD_INPUT)
         a = axis_a - k.offset_a
         b = axis_b - k.offset_b
-        x = 0.5*(a + b)
-        y = 0.5*(b - a)
+        x = 0.5 * (a + b)
+        y = 0.5 * (b - a)
         joint_z = axis_z - k.offset_z
         return ((x, y, joint_z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(x, y, z), Status.BAD_INPUT)
         a = x - y  # a and b from the x and y equations, linear in both
         axis_a = a + k.offset_a
         b = x + y
@@ -67,8 +61,8 @@ class ArrayPrograms(Programs):
         require(status, (axis_z >= k.lowest_z) & (axis_z <= k.highest_z), Status.UNREACHABLE)
         a = axis_a - k.offset_a
         b = axis_b - k.offset_b
-        value_x = 0.5*(a + b)  # X of the carriage
-        value_y = 0.5*(b - a)  # Y of the carriage
+        value_x = 0.5 * (a + b)  # X of the carriage
+        value_y = 0.5 * (b - a)  # Y of the carriage
         # limits of X of the carriage
         require(status, (value_x >= k.lowest_x) & (value_x <= k.highest_x), Status.UNREACHABLE)
         # limits of Y of the carriage

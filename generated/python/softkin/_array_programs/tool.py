@@ -25,7 +25,7 @@ class ArrayPrograms(OrientationPrograms):
         return ((k.tool_x, k.tool_y, k.tool_z), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ()), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         status = passed(position, rotation, signs, turns, reference)
@@ -49,5 +49,5 @@ class ArrayPrograms(OrientationPrograms):
             Status.BAD_INPUT,
         )
         # the flange's part along the axis about which the flange turns
-        flange_along = flange_axis_x*k.tool_x + flange_axis_y*k.tool_y + flange_axis_z*k.tool_z
-        return (base_axis_x*flange_along, base_axis_y*flange_along, base_axis_z*flange_along), status
+        flange_along = flange_axis_x * k.tool_x + flange_axis_y * k.tool_y + flange_axis_z * k.tool_z
+        return (base_axis_x * flange_along, base_axis_y * flange_along, base_axis_z * flange_along), status

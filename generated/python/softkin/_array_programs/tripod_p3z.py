@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._array import Programs, absolute, passed, require, root, select
+from softkin._array import Programs, passed, reasonable, require, root, select
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -26,76 +24,61 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
         a1 = axis_a1 - k.offset_a1
         a2 = axis_a2 - k.offset_a2
         centre_1_to_2_z = a2 - a1
         a3 = axis_a3 - k.offset_a3
         centre_1_to_3_z = a3 - a1
         # normal to the plane of the centres
-        normal_x = k.centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*k.centre_1_to_3_y
-        normal_y = centre_1_to_2_z*k.centre_1_to_3_x - k.centre_1_to_2_x*centre_1_to_3_z
-        normal_square = k.normal_z_squared + normal_x*normal_x + normal_y*normal_y  # squared length of the normal
+        normal_x = k.centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * k.centre_1_to_3_y
+        normal_y = centre_1_to_2_z * k.centre_1_to_3_x - k.centre_1_to_2_x * centre_1_to_3_z
+        # squared length of the normal
+        normal_square = k.normal_z_squared + normal_x * normal_x + normal_y * normal_y
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = k.part_of_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z
+        projection_2 = k.part_of_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = k.part_of_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z
+        projection_3 = k.part_of_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
         normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
-        one_by_normal_square = 1.0/normal_divisor
+        one_by_normal_square = 1.0 / normal_divisor
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (k.centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - k.centre_1_to_2_y_times_normal_z)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (k.centre_1_to_3_y_times_normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - k.centre_1_to_2_y_times_normal_z) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - k.centre_1_to_3_x_times_normal_z)*projection_2
-                + (k.centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - k.centre_1_to_3_x_times_normal_z) * projection_2
+            + (k.centre_1_to_2_x_times_normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (k.centre_1_to_3_x*normal_y - k.centre_1_to_3_y*normal_x)*projection_2
-                + (k.centre_1_to_2_y*normal_x - k.centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (k.centre_1_to_3_x * normal_y - k.centre_1_to_3_y * normal_x) * projection_2
+            + (k.centre_1_to_2_y * normal_x - k.centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = k.arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = k.arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*k.assembly_sign
-        x = foot_x + k.pivot_1_x + height_by_normal*normal_x
-        y = foot_y + k.pivot_1_y + height_by_normal*normal_y
-        z = a1 + foot_z + height_by_normal*k.normal_z
-        branch_carriage_1 = (a1 - z)*k.one_by_arm_length
-        branch_carriage_2 = (a2 - z)*k.one_by_arm_length
-        branch_carriage_3 = (a3 - z)*k.one_by_arm_length
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        x = foot_x + k.pivot_1_x + height_by_normal * normal_x
+        y = foot_y + k.pivot_1_y + height_by_normal * normal_y
+        z = a1 + foot_z + height_by_normal * k.normal_z
+        branch_carriage_1 = (a1 - z) * k.one_by_arm_length
+        branch_carriage_2 = (a2 - z) * k.one_by_arm_length
+        branch_carriage_3 = (a3 - z) * k.one_by_arm_length
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
             status,
-            ((normal_square > k.part_of_normal_divisor) & (height_square >= -k.arm_length_squared_times_rounding)),
+            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.arm_length_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (
-            (
-                (x, y, z),
-                ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-                (branch_carriage_1, branch_carriage_2, branch_carriage_3),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            (branch_carriage_1, branch_carriage_2, branch_carriage_3),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -103,34 +86,35 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(status, reasonable(x, y, z), Status.BAD_INPUT)
         span_1_x = x - k.part_of_span_1_x  # rod 1: known part of its vector
         span_1_y = y - k.part_of_span_1_y
-        radicand_a1 = k.arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y  # quadratic equation for a1: rod 1
+        # quadratic equation for a1: rod 1
+        radicand_a1 = k.arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
         span_2_x = x - k.part_of_span_2_x  # rod 2: known part of its vector
         span_2_y = y - k.part_of_span_2_y
-        radicand_a2 = k.arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y  # quadratic equation for a2: rod 2
+        # quadratic equation for a2: rod 2
+        radicand_a2 = k.arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
         span_3_x = x - k.part_of_span_3_x  # rod 3: known part of its vector
         span_3_y = y - k.part_of_span_3_y
-        radicand_a3 = k.arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y  # quadratic equation for a3: rod 3
+        # quadratic equation for a3: rod 3
+        radicand_a3 = k.arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         rod_1_x = x - k.pivot_1_x
         rod_1_y = y - k.pivot_1_y
-        a1 = z + root(radicand_a1)*sigma_carriage_1
+        a1 = z + root(radicand_a1) * sigma_carriage_1
         rod_1_z = z - a1
         rod_2_x = x - k.pivot_2_x
         rod_2_y = y - k.pivot_2_y
-        a2 = z + root(radicand_a2)*sigma_carriage_2
+        a2 = z + root(radicand_a2) * sigma_carriage_2
         rod_2_z = z - a2
         rod_3_x = x - k.pivot_3_x
         rod_3_y = y - k.pivot_3_y
-        a3 = z + root(radicand_a3)*sigma_carriage_3
+        a3 = z + root(radicand_a3) * sigma_carriage_3
         rod_3_z = z - a3
-        type2_rods_coplanar = (
-            -k.part_of_type2_rods_coplanar
-            *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
-                + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-            )
+        type2_rods_coplanar = -k.part_of_type2_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
         )
         axis_a1 = a1 + k.offset_a1
         axis_a2 = a2 + k.offset_a2

@@ -13,6 +13,7 @@ from softkin._array import (
     degrees,
     nearest_period,
     passed,
+    reasonable,
     require,
     root,
     select,
@@ -29,9 +30,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -39,98 +38,92 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(axis_a1) <= 1e9) & (absolute(axis_a2) <= 1e9) & (absolute(axis_a3) <= 1e9),
-            Status.BAD_INPUT,
-        )
-        a2 = DEGREE*(axis_a2 - k.offset_a2)
+        require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_y = k.part_of_pivot_2_y - k.arm_length_1_times_root_of_3_times_half*cos_a2
-        a3 = DEGREE*(axis_a3 - k.offset_a3)
+        pivot_2_y = k.part_of_pivot_2_y - k.arm_length_1_times_root_of_3_times_half * cos_a2
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
         cos_a3 = cos(a3)
-        pivot_3_y = k.arm_length_1_times_root_of_3_times_half*cos_a3 - k.part_of_pivot_2_y
-        a1 = DEGREE*(axis_a1 - k.offset_a1)
+        pivot_3_y = k.arm_length_1_times_root_of_3_times_half * cos_a3 - k.part_of_pivot_2_y
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
         sin_a1 = sin(a1)
-        pivot_1_z = k.fixed_length_2 - k.arm_length_1*sin_a1
+        pivot_1_z = k.fixed_length_2 - k.arm_length_1 * sin_a1
         sin_a2 = sin(a2)
-        pivot_2_z = k.fixed_length_2 - k.arm_length_1*sin_a2
+        pivot_2_z = k.fixed_length_2 - k.arm_length_1 * sin_a2
         centre_1_to_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        pivot_3_z = k.fixed_length_2 - k.arm_length_1*sin_a3
+        pivot_3_z = k.fixed_length_2 - k.arm_length_1 * sin_a3
         centre_1_to_3_z = pivot_3_z - pivot_1_z
-        normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y  # normal to the plane of the centres
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = k.fixed_length_1_minus_arm_1_radius - k.arm_length_1*cos_a1  # rod 1: centre about which it swings
-        pivot_2_x = k.part_of_pivot_2_x + k.half_arm_length_1*cos_a2  # rod 2: centre about which it swings
+        # rod 1: centre about which it swings
+        pivot_1_x = k.fixed_length_1_minus_arm_1_radius - k.arm_length_1 * cos_a1
+        pivot_2_x = k.part_of_pivot_2_x + k.half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
-        pivot_3_x = k.part_of_pivot_2_x + k.half_arm_length_1*cos_a3  # rod 3: centre about which it swings
+        pivot_3_x = k.part_of_pivot_2_x + k.half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
         centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
-        normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z
-        normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y
-        normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z  # squared length of the normal
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
         # trilateration: the foot projected on the vector to centre 2, times its length
-        projection_2 = 0.5*(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y)
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
         # trilateration: the foot projected on the vector to centre 3, times its length
-        projection_3 = 0.5*(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y)
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
         normal_divisor = select(normal_square > k.part_of_normal_divisor, normal_square, 1.0)
-        one_by_normal_square = 1.0/normal_divisor
+        one_by_normal_square = 1.0 / normal_divisor
         # foot of the perpendicular, seen from centre 1
-        foot_x = (
-            one_by_normal_square
-            *(
-                (normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
-                + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3
-            )
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
         )
-        foot_y = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
-                + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3
-            )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
         )
-        foot_z = (
-            one_by_normal_square
-            *(
-                (centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
-                + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3
-            )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
         )
         # square of the height over the plane of the centres
-        height_square = k.arm_length_2_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z
+        height_square = k.arm_length_2_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
         # height, as a multiple of the normal
-        height_by_normal = root(height_square*one_by_normal_square)*k.assembly_sign
-        x = foot_x + pivot_1_x + height_by_normal*normal_x
-        y = foot_y + height_by_normal*normal_y
-        z = foot_z + pivot_1_z + height_by_normal*normal_z
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        y = foot_y + height_by_normal * normal_y
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_x = x - k.fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         span_1_z = z - k.fixed_length_2
-        branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/k.arm_length_2
+        branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) / k.arm_length_2
         span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - k.part_of_pivot_2_y
         root_of_3_2 = root(3.0)
-        branch_knee_2 = ((root_of_3_2*span_2_y - span_2_x)*sin_a2 - 2.0*span_1_z*cos_a2)*k.half_by_arm_length_2
+        branch_knee_2 = (
+            (root_of_3_2 * span_2_y - span_2_x) * sin_a2 - 2.0 * span_1_z * cos_a2
+        ) * k.half_by_arm_length_2
         span_3_y = k.part_of_pivot_2_y + y
-        branch_knee_3 = -(2.0*span_1_z*cos_a3 + (span_2_x + root_of_3_2*span_3_y)*sin_a3)*k.half_by_arm_length_2
+        branch_knee_3 = (
+            -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3_2 * span_3_y) * sin_a3) * k.half_by_arm_length_2
+        )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
             status,
-            ((normal_square > k.part_of_normal_divisor) & (height_square >= -k.arm_length_2_squared_times_rounding)),
+            (normal_square > k.part_of_normal_divisor) & (height_square >= -k.arm_length_2_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
         return (
-            (
-                (x, y, z),
-                ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-                (branch_knee_1, branch_knee_2, branch_knee_3),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            (branch_knee_1, branch_knee_2, branch_knee_3),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
@@ -140,102 +133,93 @@ class ArrayPrograms(Programs):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (
-                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
-                & (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
+        require(status, reasonable(ref_a1, ref_a2, ref_a3, x, y, z), Status.BAD_INPUT)
         span_1_x = x - k.fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
         span_1_z = z - k.fixed_length_2
-        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length of the arm that a1 turns
-        part_of_scaled_cosine_a1_2 = (k.fixed_length_2 - span_1_z)*z - k.part_of_scaled_cosine_a1
+        effective_a1 = sqrt(span_1_x * span_1_x + span_1_z * span_1_z)  # effective length of the arm that a1 turns
+        part_of_scaled_cosine_a1_2 = (k.fixed_length_2 - span_1_z) * z - k.part_of_scaled_cosine_a1
         # cosine, times the scale, without cancellation
-        scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (k.fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y
+        scaled_cosine_a1 = part_of_scaled_cosine_a1_2 + (k.fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
         divisor_a1 = select(effective_a1 > k.arm_length_1_times_shortest_link, effective_a1, 1.0)
-        twice_arm_length_1_times_effective_a1 = divisor_a1*k.twice_arm_length_1
+        twice_arm_length_1_times_effective_a1 = divisor_a1 * k.twice_arm_length_1
         # law of cosines for a1: rod 1: 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
         one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a1 = one_less_cos_a1 + one_plus_cos_a1
         divisor_of_cos_a1 = select(sum_of_cos_a1 > 0.0, sum_of_cos_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         span_2_x = x - k.part_of_pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - k.part_of_pivot_2_y
         root_of_3_2 = root(3.0)
-        along_a2 = span_2_x - root_of_3_2*span_2_y
-        across_a2 = 2.0*span_1_z
-        across_a2_squared = across_a2*across_a2
-        effective_a2 = root(across_a2_squared + along_a2*along_a2)  # effective length of the arm that a2 turns
-        part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (k.part_of_pivot_2_x - span_2_x)*x
+        along_a2 = span_2_x - root_of_3_2 * span_2_y
+        across_a2 = 2.0 * span_1_z
+        across_a2_squared = across_a2 * across_a2
+        effective_a2 = root(across_a2_squared + along_a2 * along_a2)  # effective length of the arm that a2 turns
+        part_of_scaled_cosine_a2 = part_of_scaled_cosine_a1_2 + (k.part_of_pivot_2_x - span_2_x) * x
         # cosine, times the scale, without cancellation
-        scaled_cosine_a2 = (span_2_y - k.part_of_pivot_2_y)*y - part_of_scaled_cosine_a2
+        scaled_cosine_a2 = (span_2_y - k.part_of_pivot_2_y) * y - part_of_scaled_cosine_a2
         divisor_a2 = select(effective_a2 > k.part_of_divisor_a2, effective_a2, 1.0)
-        arm_length_1_times_effective_a2 = k.arm_length_1*divisor_a2
+        arm_length_1_times_effective_a2 = k.arm_length_1 * divisor_a2
         # law of cosines for a2: rod 2: 1 - cosine, times a scale
         one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2
         one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a2 = one_less_cos_a2 + one_plus_cos_a2
         divisor_of_cos_a2 = select(sum_of_cos_a2 > 0.0, sum_of_cos_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         span_3_y = k.part_of_pivot_2_y + y
-        along_a3 = span_2_x + root_of_3_2*span_3_y
-        effective_a3 = root(across_a2_squared + along_a3*along_a3)  # effective length of the arm that a3 turns
+        along_a3 = span_2_x + root_of_3_2 * span_3_y
+        effective_a3 = root(across_a2_squared + along_a3 * along_a3)  # effective length of the arm that a3 turns
         # cosine, times the scale, without cancellation
-        scaled_cosine_a3 = (k.part_of_pivot_2_y + span_3_y)*y - part_of_scaled_cosine_a2
+        scaled_cosine_a3 = (k.part_of_pivot_2_y + span_3_y) * y - part_of_scaled_cosine_a2
         divisor_a3 = select(effective_a3 > k.part_of_divisor_a2, effective_a3, 1.0)
-        arm_length_1_times_effective_a3 = k.arm_length_1*divisor_a3
+        arm_length_1_times_effective_a3 = k.arm_length_1 * divisor_a3
         # law of cosines for a3: rod 3: 1 - cosine, times a scale
         one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3
         one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3  # 1 + cosine, times the scale
         # twice the scale, as the sum of both: then cosine and sine agree
         sum_of_cos_a3 = one_less_cos_a3 + one_plus_cos_a3
         divisor_of_cos_a3 = select(sum_of_cos_a3 > 0.0, sum_of_cos_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/divisor_of_cos_a1
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
+        sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
+        sin_swing_a1 = 2.0 * root(sine_square_a1) * sigma_knee_1 / divisor_of_cos_a1
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a1 = (span_1_x*cos_swing_a1 - span_1_z*sin_swing_a1)/divisor_a1
-        rod_1_x = span_1_x + k.arm_length_1*cos_a1
-        sin_a1 = (span_1_z*cos_swing_a1 + span_1_x*sin_swing_a1)/divisor_a1
-        rod_1_z = span_1_z + k.arm_length_1*sin_a1
-        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/divisor_of_cos_a2
+        cos_a1 = (span_1_x * cos_swing_a1 - span_1_z * sin_swing_a1) / divisor_a1
+        rod_1_x = span_1_x + k.arm_length_1 * cos_a1
+        sin_a1 = (span_1_z * cos_swing_a1 + span_1_x * sin_swing_a1) / divisor_a1
+        rod_1_z = span_1_z + k.arm_length_1 * sin_a1
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_knee_2 / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a2 = (across_a2*sin_swing_a2 + along_a2*cos_swing_a2)/divisor_a2
-        rod_2_x = span_2_x - k.half_arm_length_1*cos_a2
-        rod_2_y = span_2_y + k.arm_length_1_times_root_of_3_times_half*cos_a2
-        sin_a2 = (along_a2*sin_swing_a2 - across_a2*cos_swing_a2)/divisor_a2
-        rod_2_z = span_1_z + k.arm_length_1*sin_a2
-        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # sine squared, times the squared scale
-        sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/divisor_of_cos_a3
+        cos_a2 = (across_a2 * sin_swing_a2 + along_a2 * cos_swing_a2) / divisor_a2
+        rod_2_x = span_2_x - k.half_arm_length_1 * cos_a2
+        rod_2_y = span_2_y + k.arm_length_1_times_root_of_3_times_half * cos_a2
+        sin_a2 = (along_a2 * sin_swing_a2 - across_a2 * cos_swing_a2) / divisor_a2
+        rod_2_z = span_1_z + k.arm_length_1 * sin_a2
+        sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
+        sin_swing_a3 = -2.0 * root(sine_square_a3) * sigma_knee_3 / divisor_of_cos_a3
         # addition theorem: plus the angle of the direction from which it is measured
-        cos_a3 = (across_a2*sin_swing_a3 + along_a3*cos_swing_a3)/divisor_a3
-        rod_3_x = span_2_x - k.half_arm_length_1*cos_a3
-        rod_3_y = span_3_y - k.arm_length_1_times_root_of_3_times_half*cos_a3
-        sin_a3 = (along_a3*sin_swing_a3 - across_a2*cos_swing_a3)/divisor_a3
-        rod_3_z = span_1_z + k.arm_length_1*sin_a3
-        type2_rods_coplanar = (
-            -k.part_of_type2_rods_coplanar
-            *(
-                (rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z
-                + (rod_2_x*rod_3_z - rod_2_z*rod_3_x)*y
-            )
+        cos_a3 = (across_a2 * sin_swing_a3 + along_a3 * cos_swing_a3) / divisor_a3
+        rod_3_x = span_2_x - k.half_arm_length_1 * cos_a3
+        rod_3_y = span_3_y - k.arm_length_1_times_root_of_3_times_half * cos_a3
+        sin_a3 = (along_a3 * sin_swing_a3 - across_a2 * cos_swing_a3) / divisor_a3
+        rod_3_z = span_1_z + k.arm_length_1 * sin_a3
+        type2_rods_coplanar = -k.part_of_type2_rods_coplanar * (
+            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
+            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+            + (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
         )
-        part = k.root_of_3_times_half_by_arm_length_2*x
-        half_by_arm_length_2_times_y = k.half_by_arm_length_2*y
+        part = k.root_of_3_times_half_by_arm_length_2 * x
+        half_by_arm_length_2_times_y = k.half_by_arm_length_2 * y
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
-        near_a1 = select(turn_a1 != 0, 360.0*select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
+        near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: whole turns added
         open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
-        near_a2 = select(turn_a2 != 0, 360.0*select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
+        near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(k.offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: whole turns added
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
-        near_a3 = select(turn_a3 != 0, 360.0*select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
+        near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: whole turns added
         # a1: its effective length is too short
         # a1: out of reach
@@ -261,15 +245,11 @@ class ArrayPrograms(Programs):
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         require(status, type2_rods_coplanar >= k.min_type2_margin, Status.UNREACHABLE)
         # ball joint of rod 1
-        require(status, absolute(y)/k.arm_length_2 <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
+        require(status, absolute(y) / k.arm_length_2 <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 2
-        require(
-            status, absolute(half_by_arm_length_2_times_y + part) <= k.sin_max_angle_ball_joint, Status.UNREACHABLE,
-        )
+        require(status, absolute(half_by_arm_length_2_times_y + part) <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 3
-        require(
-            status, absolute(half_by_arm_length_2_times_y - part) <= k.sin_max_angle_ball_joint, Status.UNREACHABLE,
-        )
+        require(status, absolute(half_by_arm_length_2_times_y - part) <= k.sin_max_angle_ball_joint, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     OrientationPrograms,
-    absolute,
     cos,
     degrees,
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -29,9 +29,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(OrientationPrograms):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -39,34 +37,31 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9), Status.BAD_INPUT)
-        a = DEGREE*(axis_a - k.offset_a)
+        require(status, reasonable(axis_a, axis_b), Status.BAD_INPUT)
+        a = DEGREE * (axis_a - k.offset_a)
         sin_a = sin(a)
         cos_a = cos(a)
-        b = DEGREE*(axis_b - k.offset_b)
+        b = DEGREE * (axis_b - k.offset_b)
         sin_b = sin(b)
-        r31_at_b = -k.tool_side*sin_b
-        r13_at_b = -r31_at_b*cos_a
-        x_at_b = k.roll_axis_offset_x*cos_a - k.roll_axis_offset_y*sin_a
-        x = x_at_b + r13_at_b*k.tool_length_times_tool_side
-        r23_at_b = -r31_at_b*sin_a
-        y_at_b = k.roll_axis_offset_y*cos_a + k.roll_axis_offset_x*sin_a
-        y = y_at_b + r23_at_b*k.tool_length_times_tool_side
+        r31_at_b = -k.tool_side * sin_b
+        r13_at_b = -r31_at_b * cos_a
+        x_at_b = k.roll_axis_offset_x * cos_a - k.roll_axis_offset_y * sin_a
+        x = x_at_b + r13_at_b * k.tool_length_times_tool_side
+        r23_at_b = -r31_at_b * sin_a
+        y_at_b = k.roll_axis_offset_y * cos_a + k.roll_axis_offset_x * sin_a
+        y = y_at_b + r23_at_b * k.tool_length_times_tool_side
         cos_b = cos(b)
-        z = k.roll_axis_offset_z + k.tool_length_times_tool_side*cos_b
-        r11_at_b = cos_a*cos_b
-        r21_at_b = cos_b*sin_a
+        z = k.roll_axis_offset_z + k.tool_length_times_tool_side * cos_b
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
         return (
-            (
-                (x, y, z),
-                ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)),
-                (sin_b,),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_b, -sin_a, r13_at_b), (r21_at_b, cos_a, r23_at_b), (r31_at_b, 0.0, cos_b)),
+            (sin_b,),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
@@ -76,32 +71,29 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
-        r13_of_a = r13/k.tool_side
-        r23_of_a = r23/k.tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # polar coordinates: the radius at angle a
+        require(status, reasonable(ref_a, ref_b), Status.BAD_INPUT)
+        r13_of_a = r13 / k.tool_side
+        r23_of_a = r23 / k.tool_side
+        radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
 
         def elsewhere_direction_x_a(ref_a: Real) -> Reals:
-            free_a = (ref_a - k.offset_a)*DEGREE
+            free_a = (ref_a - k.offset_a) * DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
             return (direction_x_a, direction_y_a)
 
-        direction_x_a = sigma_roll*r13_of_a
-        direction_y_a = sigma_roll*r23_of_a
+        direction_x_a = sigma_roll * r13_of_a
+        direction_y_a = sigma_roll * r23_of_a
         # polar coordinates: angle a from the r13 and r23 equations; in the singularity: the angle of the reference
         direction_x_a, direction_y_a = elsewhere(
-            radius_a > 1e-11,
-            (direction_x_a, direction_y_a),
-            elsewhere_direction_x_a,
-            (ref_a,),
+            radius_a > 1e-11, (direction_x_a, direction_y_a), elsewhere_direction_x_a, (ref_a,)
         )
         open_a = select(k.single_a, k.mid_a, ref_a)  # A: without a commanded turn, the value nearest to this
-        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
+        near_a = select(turn_a != 0, 360.0 * select(turn_a > 0, turn_a - 1, turn_a), open_a)
         axis_a = nearest_period(k.offset_a + degrees(direction_y_a, direction_x_a), near_a)  # A: whole turns added
-        a_radius_of_b = sigma_roll*radius_a
+        a_radius_of_b = sigma_roll * radius_a
         open_b = select(k.single_b, k.mid_b, ref_b)  # B: without a commanded turn, the value nearest to this
-        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
+        near_b = select(turn_b != 0, 360.0 * select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b = nearest_period(k.offset_b + degrees(a_radius_of_b, r33), near_b)  # B: whole turns added
         return (axis_a, axis_b), status
 
@@ -126,20 +118,13 @@ class ArrayPrograms(OrientationPrograms):
         # inputs must be numbers, and of reasonable size
         require(
             status,
-            (
-                (absolute(base_axis_x) <= 1e9) & (absolute(base_axis_y) <= 1e9) & (absolute(base_axis_z) <= 1e9)
-                & (absolute(flange_axis_x) <= 1e9) & (absolute(flange_axis_y) <= 1e9)
-                & (absolute(flange_axis_z) <= 1e9)
-            ),
+            reasonable(base_axis_x, base_axis_y, base_axis_z, flange_axis_x, flange_axis_y, flange_axis_z),
             Status.BAD_INPUT,
         )
         # the flange's part along the axis about which the flange turns
-        flange_along = flange_axis_z*k.roll_axis_offset_z
+        flange_along = flange_axis_z * k.roll_axis_offset_z
         return (
-            (
-                base_axis_x*flange_along + r13*k.tool_length_times_tool_side,
-                base_axis_y*flange_along + r23*k.tool_length_times_tool_side,
-                base_axis_z*flange_along + r33*k.tool_length_times_tool_side,
-            ),
-            status,
-        )
+            base_axis_x * flange_along + r13 * k.tool_length_times_tool_side,
+            base_axis_y * flange_along + r23 * k.tool_length_times_tool_side,
+            base_axis_z * flange_along + r33 * k.tool_length_times_tool_side,
+        ), status

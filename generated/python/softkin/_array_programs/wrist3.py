@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from softkin._array import (
     DEGREE,
     OrientationPrograms,
-    absolute,
     cos,
     degrees,
     elsewhere,
     nearest_period,
     passed,
+    reasonable,
     require,
     select,
     sin,
@@ -29,9 +29,7 @@ if TYPE_CHECKING:
 class ArrayPrograms(OrientationPrograms):
     """The programs of one machine, for its constants."""
 
-    def __init__(self, constants: Constants) -> None:
-        """Programs for a machine."""
-        self.constants = constants
+    constants: Constants
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -39,44 +37,37 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(axis_a) <= 1e9) & (absolute(axis_b) <= 1e9) & (absolute(axis_c) <= 1e9),
-            Status.BAD_INPUT,
-        )
-        b = DEGREE*(axis_b - k.offset_b)
+        require(status, reasonable(axis_a, axis_b, axis_c), Status.BAD_INPUT)
+        b = DEGREE * (axis_b - k.offset_b)
         sin_b = sin(b)
-        a = DEGREE*(axis_a - k.offset_a)
+        a = DEGREE * (axis_a - k.offset_a)
         cos_a = cos(a)
-        r13_at_b = -cos_a*sin_b
+        r13_at_b = -cos_a * sin_b
         cos_b = cos(b)
         sin_a = sin(a)
-        r11_at_b = cos_a*cos_b
-        c = DEGREE*(axis_c - k.offset_c)
+        r11_at_b = cos_a * cos_b
+        c = DEGREE * (axis_c - k.offset_c)
         sin_c = sin(c)
         cos_c = cos(c)
-        r11_at_c = r11_at_b*cos_c - sin_a*sin_c
-        r12_at_c = -cos_c*sin_a - r11_at_b*sin_c
-        x = r11_at_c*k.tool_offset_x + r12_at_c*k.tool_offset_y + r13_at_b*k.tool_offset_z
-        r23_at_b = -sin_a*sin_b
-        r21_at_b = cos_b*sin_a
-        r21_at_c = cos_a*sin_c + r21_at_b*cos_c
-        r22_at_c = cos_a*cos_c - r21_at_b*sin_c
-        y = r21_at_c*k.tool_offset_x + r22_at_c*k.tool_offset_y + r23_at_b*k.tool_offset_z
-        r31_at_c = cos_c*sin_b
-        r32_at_c = -sin_b*sin_c
-        z = k.tool_offset_z*cos_b + r31_at_c*k.tool_offset_x + r32_at_c*k.tool_offset_y
+        r11_at_c = r11_at_b * cos_c - sin_a * sin_c
+        r12_at_c = -cos_c * sin_a - r11_at_b * sin_c
+        x = r11_at_c * k.tool_offset_x + r12_at_c * k.tool_offset_y + r13_at_b * k.tool_offset_z
+        r23_at_b = -sin_a * sin_b
+        r21_at_b = cos_b * sin_a
+        r21_at_c = cos_a * sin_c + r21_at_b * cos_c
+        r22_at_c = cos_a * cos_c - r21_at_b * sin_c
+        y = r21_at_c * k.tool_offset_x + r22_at_c * k.tool_offset_y + r23_at_b * k.tool_offset_z
+        r31_at_c = cos_c * sin_b
+        r32_at_c = -sin_b * sin_c
+        z = k.tool_offset_z * cos_b + r31_at_c * k.tool_offset_x + r32_at_c * k.tool_offset_y
         return (
-            (
-                (x, y, z),
-                ((r11_at_c, r12_at_c, r13_at_b), (r21_at_c, r22_at_c, r23_at_b), (r31_at_c, r32_at_c, cos_b)),
-                (sin_b,),
-            ),
-            status,
-        )
+            (x, y, z),
+            ((r11_at_c, r12_at_c, r13_at_b), (r21_at_c, r22_at_c, r23_at_b), (r31_at_c, r32_at_c, cos_b)),
+            (sin_b,),
+        ), status
 
     def branch(
-        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals,
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
@@ -86,40 +77,33 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
-        require(
-            status,
-            (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9),
-            Status.BAD_INPUT,
-        )
-        radius_c = sqrt(r31*r31 + r32*r32)  # polar coordinates: the radius at angle c
+        require(status, reasonable(ref_a, ref_b, ref_c), Status.BAD_INPUT)
+        radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
 
         def elsewhere_direction_x_c(ref_c: Real) -> Reals:
-            free_c = (ref_c - k.offset_c)*DEGREE
+            free_c = (ref_c - k.offset_c) * DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
             return (direction_x_c, direction_y_c)
 
-        direction_x_c = sigma_hand*r31
-        direction_y_c = -sigma_hand*r32
+        direction_x_c = sigma_hand * r31
+        direction_y_c = -sigma_hand * r32
         # polar coordinates: angle c from the r31 and r32 equations; in the singularity: the angle of the reference
         direction_x_c, direction_y_c = elsewhere(
-            radius_c > 1e-11,
-            (direction_x_c, direction_y_c),
-            elsewhere_direction_x_c,
-            (ref_c,),
+            radius_c > 1e-11, (direction_x_c, direction_y_c), elsewhere_direction_x_c, (ref_c,)
         )
-        scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
-        direction_y_a = -direction_x_c*r12 - direction_y_c*r11
+        scaled_r22_before_c = direction_x_c * r22 + direction_y_c * r21
+        direction_y_a = -direction_x_c * r12 - direction_y_c * r11
         open_a = select(k.single_a, k.mid_a, ref_a)  # A: without a commanded turn, the value nearest to this
-        near_a = select(turn_a != 0, 360.0*select(turn_a > 0, turn_a - 1, turn_a), open_a)
+        near_a = select(turn_a != 0, 360.0 * select(turn_a > 0, turn_a - 1, turn_a), open_a)
         # A: whole turns added
         axis_a = nearest_period(k.offset_a + degrees(direction_y_a, scaled_r22_before_c), near_a)
-        c_radius_of_b = sigma_hand*radius_c
+        c_radius_of_b = sigma_hand * radius_c
         open_b = select(k.single_b, k.mid_b, ref_b)  # B: without a commanded turn, the value nearest to this
-        near_b = select(turn_b != 0, 360.0*select(turn_b > 0, turn_b - 1, turn_b), open_b)
+        near_b = select(turn_b != 0, 360.0 * select(turn_b > 0, turn_b - 1, turn_b), open_b)
         axis_b = nearest_period(k.offset_b + degrees(c_radius_of_b, r33), near_b)  # B: whole turns added
         open_c = select(k.single_c, k.mid_c, ref_c)  # C: without a commanded turn, the value nearest to this
-        near_c = select(turn_c != 0, 360.0*select(turn_c > 0, turn_c - 1, turn_c), open_c)
+        near_c = select(turn_c != 0, 360.0 * select(turn_c > 0, turn_c - 1, turn_c), open_c)
         axis_c = nearest_period(k.offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: whole turns added
         return (axis_a, axis_b, axis_c), status
 
@@ -142,10 +126,7 @@ class ArrayPrograms(OrientationPrograms):
         k = self.constants
         status = passed(rotation, flange_axis, base_axis)
         return (
-            (
-                r11*k.tool_offset_x + r12*k.tool_offset_y + r13*k.tool_offset_z,
-                r21*k.tool_offset_x + r22*k.tool_offset_y + r23*k.tool_offset_z,
-                r31*k.tool_offset_x + r32*k.tool_offset_y + r33*k.tool_offset_z,
-            ),
-            status,
-        )
+            r11 * k.tool_offset_x + r12 * k.tool_offset_y + r13 * k.tool_offset_z,
+            r21 * k.tool_offset_x + r22 * k.tool_offset_y + r23 * k.tool_offset_z,
+            r31 * k.tool_offset_x + r32 * k.tool_offset_y + r33 * k.tool_offset_z,
+        ), status
