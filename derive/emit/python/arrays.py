@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive.emit.python import calls
 from derive.emit.python.control_flow import array_arm_lines, fixed
-from derive.emit.python.layout import fold
+from derive.emit.python.layout import fold, note_lines
 from derive.emit.python.loops import array_end, array_head
 from derive.emit.python.printer import ArrayPrinter, words
 from derive.emit.python.program import (
@@ -16,7 +16,6 @@ from derive.emit.python.program import (
     binding_lines,
     constants_of,
     grouped,
-    note_lines,
     step_lines,
     unpacked,
     values_of,

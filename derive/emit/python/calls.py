@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.emit.python.layout import fold, taken_apart, tuple_of
+from derive.emit.python.layout import fold, note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.program import (
     Call,
@@ -80,4 +80,4 @@ def _taken(call: Call, source: str) -> list[str]:
 
 
 def _note(call: Call | FindRoot) -> list[str]:
-    return [f"# {call.note}"] if call.note else []
+    return note_lines(call.note)

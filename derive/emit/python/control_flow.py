@@ -23,7 +23,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.emit.python.layout import fold, taken_apart, tuple_of
+from derive.emit.python.layout import fold, note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.primitives import (
     NearestPeriod,
@@ -52,7 +52,7 @@ def array_arm_lines(
         declared = [f"{spelled(name.name)}: {_kind(name)}" for name in arms.names]
         return [*declared, *fold(f"if {condition}:"), *_indented(holds), "else:", *_indented(fails)]
     notes = dict.fromkeys(i.comment for i in arms.holds if isinstance(i, Let) and i.name in arms.names and i.comment)
-    said = [f"# {note}" for note in notes]
+    said = [line for note in notes for line in note_lines(note)]
     (second, other), (first, held) = _side(arms.fails, arms.names, printer), _side(arms.holds, arms.names, printer)
     if not second:
         first, held = _side(arms.holds, arms.names, printer, is_written_out=len(results) == 1)

@@ -7,6 +7,7 @@ import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from textwrap import wrap
 
 WIDTH = 120
 """No line is longer, if it can be broken at all."""
@@ -79,3 +80,8 @@ def fits(line: str, comment: str) -> bool:
     """Whether a comment can stand behind a statement in a method, one choice deep: the layout puts spaces around operators."""
     spaced = len(line) + 2 * (line.count("*") + line.count("/"))
     return _INDENT + 4 + spaced + len(f"  # {comment}") <= WIDTH
+
+
+def note_lines(note: str) -> list[str]:
+    """What the reader is told, as a comment that leaves room for an indent; nothing where that is nothing."""
+    return wrap(note, WIDTH - 20, initial_indent="# ", subsequent_indent="# ")

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from derive.emit.python.layout import fold, taken_apart, tuple_of
+from derive.emit.python.layout import fold, note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.program import Iterate, Solve
 
@@ -14,7 +14,7 @@ from derive.ir.program import Iterate, Solve
 def solve_lines(system: Solve, printer: ScalarPrinter) -> list[str]:
     """`determinant, x, y = solve(matrix, right)`, matrices by rows."""
     targets = [spelled(system.determinant.name) if system.determinant is not None else "_", *_names(system.names)]
-    note = [f"# {system.note}"] if system.note else []
+    note = note_lines(system.note)
     matrix, right = _matrix(system.matrix, system.size, printer), _matrix(system.right, system.columns, printer)
     return [*note, *taken_apart(targets, f"solve({matrix}, {right})")]
 
@@ -30,7 +30,7 @@ def array_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
 
 
 def _head(loop: Iterate, start: str) -> list[str]:
-    note = [f"# {loop.note}"] if loop.note else []
+    note = note_lines(loop.note)
     return [*note, *fold(f"{', '.join(_names(loop.state))} = {start}"), f"for _ in range({loop.limit}):"]
 
 

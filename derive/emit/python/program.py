@@ -9,7 +9,7 @@ from itertools import groupby
 import sympy as sp
 
 from derive.emit.python import calls as python_calls
-from derive.emit.python.layout import assigned, fits, fold, taken_apart, tuple_of
+from derive.emit.python.layout import assigned, fits, fold, note_lines, taken_apart, tuple_of
 from derive.emit.python.loops import scalar_end, scalar_head, solve_lines
 from derive.emit.python.printer import ScalarPrinter, literal, spelled
 from derive.emit.python.refusal import PLAIN, Refusals, conjunction
@@ -119,7 +119,7 @@ def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[
     """A binding, or a choice between two sides that bind the same or refuse."""
     if isinstance(item, If):
         notes = dict.fromkeys(i.comment for i in item.holds if isinstance(i, Let) and i.name in item.names and i.comment)
-        head = [*(f"# {note}" for note in notes), *fold(f"if {conjunction([item.condition])}:")]
+        head = [*(line for note in notes for line in note_lines(note)), *fold(f"if {conjunction([item.condition])}:")]
         sides = [[_unnoted(i, item.names) for i in side] for side in (item.holds, item.fails)]
         holds, fails = (_side(side, refusals, printer) for side in sides)
         return [*head, *holds, "else:", *fails]
@@ -184,11 +184,6 @@ def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
     if let.comment and fits(line, let.comment):
         return [f"{line}  # {let.comment}"]
     return [*note_lines(let.comment), *fold(line)]
-
-
-def note_lines(note: str) -> list[str]:
-    """What the reader is told, as a comment; nothing where that is nothing."""
-    return [f"# {note}"] if note else []
 
 
 def grouped(body: Sequence[Item]) -> Iterator[tuple[Item, tuple[Require, ...]]]:

@@ -9,6 +9,7 @@ import sympy as sp
 from sympy.core.relational import Relational
 
 from derive.emit.python.calls import FOUND
+from derive.emit.python.layout import note_lines
 from derive.emit.python.printer import ScalarPrinter
 from derive.ir.constants import LARGEST
 from derive.ir.program import Iterate, Require, Status
@@ -121,7 +122,7 @@ def _unless(conditions: Sequence[sp.Basic]) -> str:
 def _notes(requires: Sequence[Require]) -> list[str]:
     """What the conditions are about, as a comment; of inputs the function that tests them says it."""
     note = requires[0].comment
-    return [f"# {note}"] if note and not _sized(requires[0].condition) else []
+    return [] if _sized(requires[0].condition) else note_lines(note)
 
 
 def _sized(*conditions: sp.Basic) -> list[sp.Expr]:

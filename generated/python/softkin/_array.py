@@ -92,8 +92,8 @@ class Programs(ABC):
     ) -> tuple[Reals, Codes]:
         """The axes and statuses of every slot, in arrays (2, …, 2, rows): of two for a branch, the first stands last.
 
-        The sign of a branch is an array along an axis of its own. So a value is computed for the signs that it depends on,
-        and no others: where one branch decides it, for (2, rows).
+        The sign of a branch is an array along an axis of its own. So a value is computed for the signs that it depends
+        on, and no others: where one branch decides it, for (2, rows).
         """
         signs = tuple([_BOTH_SIGNS.reshape(2, *(1,) * (k + 1)) for k in range(branches)])
         return self.branch(position, rotation, signs, turns, reference)

@@ -1400,7 +1400,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             radius_q4_closed = sqrt(
                 r23_from_q1_closed * r23_from_q1_closed + r33_from_q123_closed * r33_from_q123_closed
             )
-            # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the
+            # reference
             if radius_q4_closed > 1e-11:
                 direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
                 direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed

@@ -818,7 +818,8 @@ class Ac6ThreeParallel(Mechanism):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / abs(divisor_of_cos_q3)
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle
+        # of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3 * cos_q3
             arm_across_q2 = a3 * sin_q3

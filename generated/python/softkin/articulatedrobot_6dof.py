@@ -523,7 +523,8 @@ class ArticulatedRobot6DOF(Mechanism):
         r23_from_q1 = r23 * cos_q1 - r13 * sin_q1
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+        # reference
         if radius_q4 > 1e-11:
             direction_x_q4 = -sigma_hand * r13_from_q123
             direction_y_q4 = sigma_hand * r23_from_q1

@@ -370,7 +370,8 @@ class PosRRR(OffsetKinematics):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle
+        # of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3_2 * sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
@@ -668,7 +669,8 @@ class PosRRR(OffsetKinematics):
         # addition theorem: plus the angle of the direction from which it is measured
         cos_q3 = (tool_x * cos_swing_q3 + tool_y * sin_swing_q3) / effective_q3
         sin_q3 = (tool_x * sin_swing_q3 - tool_y * cos_swing_q3) / effective_q3
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle
+        # of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = tool_y * cos_q3 + tool_x * sin_q3
             arm_across_q2 = a2 + tool_x * cos_q3 - tool_y * sin_q3

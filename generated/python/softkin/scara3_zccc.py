@@ -265,7 +265,8 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         axis_a1 = offset_a1 + z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = 2.0 * (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a3
-        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle
+        # of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2 * cos_a3
             arm_across_a2 = link_length_2 * sin_a3
@@ -462,7 +463,8 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which it is measured
         cos_a3 = (tool_x * cos_swing_a3 + tool_y * sin_swing_a3) / effective_a3
         sin_a3 = (tool_x * sin_swing_a3 - tool_y * cos_swing_a3) / effective_a3
-        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by a2 that takes the arm to the point that it must reach; in the singularity: the angle
+        # of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + tool_x * cos_a3 - tool_y * sin_a3
             arm_across_a2 = tool_y * cos_a3 + tool_x * sin_a3

@@ -1091,7 +1091,8 @@ class ArrayPrograms(Programs):
 
             direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
             direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed
-            # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r33 and r23 equations; in the singularity: the angle of the
+            # reference
             direction_x_q4_closed, direction_y_q4_closed = elsewhere(
                 radius_q4_closed > 1e-11,
                 (direction_x_q4_closed, direction_y_q4_closed),

@@ -317,7 +317,8 @@ class ArrayPrograms(Programs):
 
         direction_x_q4 = -sigma_hand * r13_from_q123
         direction_y_q4 = sigma_hand * r23_from_q1
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+        # reference
         direction_x_q4, direction_y_q4 = elsewhere(
             radius_q4 > 1e-11, (direction_x_q4, direction_y_q4), elsewhere_direction_x_q4, (ref_a4,)
         )

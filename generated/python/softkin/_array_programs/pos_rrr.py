@@ -242,7 +242,8 @@ class ArrayPrograms(Programs):
         arm_across_q2 = k.a2 + k.effective_q3_2 * cos_swing_q3
         direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
         direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
-        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle of the reference
+        # rotation by q2 that takes the arm to the point that it must reach; in the singularity: the angle
+        # of the reference
         direction_x_q2, direction_y_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
             (direction_x_q2, direction_y_q2),

@@ -117,7 +117,8 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q4 = sqrt(minus_r13_from_q123 * minus_r13_from_q123 + r23_from_q1 * r23_from_q1)
         r12_from_q1 = r12 * cos_q1_before_q1_for_q3_front + r22 * sin_q1_before_q1_for_q3_front
         r11_from_q1 = r11 * cos_q1_before_q1_for_q3_front + r21 * sin_q1_before_q1_for_q3_front
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+        # reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -127,7 +128,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_a4 = (ref_a4 - offset_a4) * DEGREE
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+            # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -171,7 +173,8 @@ def unrolled(k: Constants) -> Unrolled:
         minus_r13_from_q123 = r13_from_q1 * sin_q23 - r33 * cos_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123 * minus_r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+        # reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -181,7 +184,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_a4 = (ref_a4 - offset_a4) * DEGREE
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+            # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -257,7 +261,8 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q4 = sqrt(minus_r13_from_q123 * minus_r13_from_q123 + r23_from_q1 * r23_from_q1)
         r12_from_q1 = r12 * cos_q1_before_q1_for_q3_back + r22 * sin_q1_before_q1_for_q3_back
         r11_from_q1 = r11 * cos_q1_before_q1_for_q3_back + r21 * sin_q1_before_q1_for_q3_back
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+        # reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -267,7 +272,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_a4 = (ref_a4 - offset_a4) * DEGREE
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+            # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -311,7 +317,8 @@ def unrolled(k: Constants) -> Unrolled:
         minus_r13_from_q123 = r13_from_q1 * sin_q23 - r33 * cos_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123 * minus_r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+        # reference
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -321,7 +328,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_a4 = (ref_a4 - offset_a4) * DEGREE
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+            # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
@@ -502,7 +510,8 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23 * cos_q1_before_q1_for_q3 - r13 * sin_q1_before_q1_for_q3
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(minus_r13_from_q123 * minus_r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+        # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+        # reference
         if radius_q4 > 0.1:
             direction_x_q4 = sigma_hand * minus_r13_from_q123
             direction_y_q4 = sigma_hand * r23_from_q1
@@ -513,7 +522,8 @@ def unrolled(k: Constants) -> Unrolled:
                 (r11 * cos_q1_before_q1_for_q3 + r21 * sin_q1_before_q1_for_q3) * cos_q23 + r31 * sin_q23
             )
         else:
-            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the reference
+            # polar coordinates: angle q4 from the r13 and r23 equations; in the singularity: the angle of the
+            # reference
             if radius_q4 > 1e-11:
                 direction_x_q4 = sigma_hand * minus_r13_from_q123
                 direction_y_q4 = sigma_hand * r23_from_q1
