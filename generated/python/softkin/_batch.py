@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from softkin._array import Array, Codes, Programs, Real, Reals, Rotation, StartedPrograms, Truth, Vector, select
+from softkin._array import Array, Codes, Programs, Real, Reals, Rotation, StartedPrograms, Vector, reasonable
 from softkin._array_rotation import made_rotations
 from softkin._columns import Bytes, Configurations, Mask, Poses, Rows, Table, columns, configurations
 from softkin._configuration import AUTOMATIC, COINCIDE, COINCIDENT, EDGE, FIRST, SECOND, slots
@@ -168,38 +168,38 @@ def _nearest(robot: Mechanism, programs: Programs, poses: Poses, chosen: Configu
     """Every row on the nearest of the slots that its bytes leave open."""
     position, rotation, branches = poses.position, poses.rotation, robot.BRANCHES
     axes, status = programs.every_branch(position, rotation, branches, chosen.turns, poses.reference)
-    best = _Best(robot, poses)
-    for (slot, _), at in zip(slots((AUTOMATIC,) * branches), np.ndindex((2,) * branches), strict=True):
-        best.take(tuple([np.broadcast_to(value, status.shape)[at] for value in axes]), status[at], chosen.allow(slot))
-    return tuple(best.axes), best.status
+    away = [np.broadcast_to(_distance(axes, poses.reference, c.axes), status.shape) for c in robot._criteria]
+    best = _Best(robot, poses.count)
+    for number, ((slot, _), at) in enumerate(
+        zip(slots((AUTOMATIC,) * branches), np.ndindex(status.shape[:-1]), strict=True)
+    ):
+        best.take(number, [own[at] for own in away], status[at], chosen.allow(slot))
+    taken = *np.unravel_index(best.slot, status.shape[:-1]), np.arange(poses.count)
+    return tuple([np.broadcast_to(value, status.shape)[taken] for value in axes]), best.status
+
+
+def _distance(axes: Reals, reference: Reals, counted: tuple[int, ...]) -> Array:
+    """As `squared_distance` on plain numbers, of every slot."""
+    are_numbers = reasonable(*[reference[i] for i in counted])
+    total = sum([(axes[i] - reference[i]) ** 2 for i in counted], np.zeros(()))
+    return total if are_numbers is True else np.where(are_numbers, total, 0.0)
 
 
 class _Best:
-    """The axes of every row on the nearest slot so far, and its status: that of its first slot where there are none."""
+    """The number of the nearest slot so far of every row, and its status: that of its first slot where there are none."""
 
-    def __init__(self, robot: Mechanism, poses: Poses) -> None:
+    def __init__(self, robot: Mechanism, rows: int) -> None:
         self.criteria = robot._criteria
-        self.reference = poses.reference
-        self.axes: list[Real] = [np.nan for _ in robot.AXES]
-        self.status = np.full(poses.count, _UNTRIED, np.uint8)
-        self.least = [np.full(poses.count, np.inf) for _ in self.criteria]
+        self.slot = np.zeros(rows, np.intp)
+        self.status = np.full(rows, _UNTRIED, np.uint8)
+        self.least = [np.full(rows, np.inf) for _ in self.criteria]
 
-    def take(self, axes: Reals, outcome: Codes, allowed: Mask) -> None:
+    def take(self, number: int, distances: list[Array], outcome: Codes, allowed: Mask) -> None:
         """Try a slot for the rows that allow it."""
-        distances = [self._distance(axes, criterion.axes, len(outcome)) for criterion in self.criteria]
         is_better = allowed & (outcome == Status.OK) & ((self.status != Status.OK) | self._are_nearer(distances))
         self.status = np.where(is_better | (allowed & (self.status == _UNTRIED)), outcome, self.status)
         self.least = [np.where(is_better, own, least) for own, least in zip(distances, self.least, strict=True)]
-        self.axes = [np.where(is_better, new, old) for new, old in zip(axes, self.axes, strict=True)]
-
-    def _distance(self, axes: Reals, counted: tuple[int, ...], rows: int) -> Array:
-        """As `squared_distance` on plain numbers."""
-        are_numbers: Truth = True
-        total = np.zeros(rows)
-        for i in counted:
-            are_numbers = are_numbers & (np.abs(self.reference[i]) <= 1e9)
-            total = total + (axes[i] - self.reference[i]) ** 2
-        return np.where(are_numbers, total, 0.0)
+        self.slot[is_better] = number
 
     def _are_nearer(self, distances: list[Array]) -> Mask:
         """The rows whose distance by a criterion is less, where those before it tie."""
