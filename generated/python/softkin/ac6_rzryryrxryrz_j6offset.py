@@ -28,9 +28,9 @@ Singularities:
     determinant: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 143 additions, 189 multiplications, 21 divisions, 0 square roots, 14 sines
-    inverse: 76235 additions, 124331 multiplications, 6685 divisions, 3143 square roots, 5316 sines
-    inverse, all 16 branches open: 1219265 additions, 1988621 multiplications, 106825 divisions, 50258 square roots, 85056 sines
+    forward: 143 additions, 204 multiplications, 12 divisions, 0 square roots, 14 sines
+    inverse: 76235 additions, 125519 multiplications, 5857 divisions, 3143 square roots, 5316 sines
+    inverse, all 16 branches open: 1219265 additions, 2007629 multiplications, 93577 divisions, 50258 square roots, 85056 sines
     the search along A6: at most 760 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and

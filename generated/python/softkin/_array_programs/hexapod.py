@@ -541,126 +541,116 @@ class ArrayPrograms(StartedPrograms):
         l6 = root(root_square_l6)
         # leg 6: without length it has no direction
         require(status, l6 > machine_scale_times_shortest_link, Status.UNREACHABLE)
-        # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = select(l1 > machine_scale_times_shortest_link, l1, 1.0)
-        one_by_l1 = 1.0/divisor_1
-        along_1_x = one_by_l1*span_1_x
-        along_1_y = one_by_l1*span_1_y
-        along_1_z = one_by_l1*span_1_z
-        cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
+        # leg 1: how far it reaches along the axis of its cone on the base
+        along_base_cone_1 = home_along_1_x*span_1_x + home_along_1_y*span_1_y + home_along_1_z*span_1_z
         # leg 1: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_1 >= least_cos_base, Status.UNREACHABLE)
-        # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = select(l2 > machine_scale_times_shortest_link, l2, 1.0)
-        one_by_l2 = 1.0/divisor_2
-        along_2_x = one_by_l2*span_2_x
-        along_2_y = one_by_l2*span_2_y
-        along_2_z = one_by_l2*span_2_z
-        cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
+        require(status, along_base_cone_1 >= l1*least_cos_base, Status.UNREACHABLE)
+        # leg 2: how far it reaches along the axis of its cone on the base
+        along_base_cone_2 = home_along_2_x*span_2_x + home_along_2_y*span_2_y + home_along_2_z*span_2_z
         # leg 2: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_2 >= least_cos_base, Status.UNREACHABLE)
-        # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = select(l3 > machine_scale_times_shortest_link, l3, 1.0)
-        one_by_l3 = 1.0/divisor_3
-        along_3_x = one_by_l3*span_3_x
-        along_3_y = one_by_l3*span_3_y
-        along_3_z = one_by_l3*span_3_z
-        cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
+        require(status, along_base_cone_2 >= l2*least_cos_base, Status.UNREACHABLE)
+        # leg 3: how far it reaches along the axis of its cone on the base
+        along_base_cone_3 = home_along_3_x*span_3_x + home_along_3_y*span_3_y + home_along_3_z*span_3_z
         # leg 3: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_3 >= least_cos_base, Status.UNREACHABLE)
-        # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = select(l4 > machine_scale_times_shortest_link, l4, 1.0)
-        one_by_l4 = 1.0/divisor_4
-        along_4_x = one_by_l4*span_4_x
-        along_4_y = one_by_l4*span_4_y
-        along_4_z = one_by_l4*span_4_z
-        cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
+        require(status, along_base_cone_3 >= l3*least_cos_base, Status.UNREACHABLE)
+        # leg 4: how far it reaches along the axis of its cone on the base
+        along_base_cone_4 = home_along_4_x*span_4_x + home_along_4_y*span_4_y + home_along_4_z*span_4_z
         # leg 4: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_4 >= least_cos_base, Status.UNREACHABLE)
-        # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = select(l5 > machine_scale_times_shortest_link, l5, 1.0)
-        one_by_l5 = 1.0/divisor_5
-        along_5_x = one_by_l5*span_5_x
-        along_5_y = one_by_l5*span_5_y
-        along_5_z = one_by_l5*span_5_z
-        cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
+        require(status, along_base_cone_4 >= l4*least_cos_base, Status.UNREACHABLE)
+        # leg 5: how far it reaches along the axis of its cone on the base
+        along_base_cone_5 = home_along_5_x*span_5_x + home_along_5_y*span_5_y + home_along_5_z*span_5_z
         # leg 5: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_5 >= least_cos_base, Status.UNREACHABLE)
-        # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = select(l6 > machine_scale_times_shortest_link, l6, 1.0)
-        one_by_l6 = 1.0/divisor_6
-        along_6_x = one_by_l6*span_6_x
-        along_6_y = one_by_l6*span_6_y
-        along_6_z = one_by_l6*span_6_z
-        cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
+        require(status, along_base_cone_5 >= l5*least_cos_base, Status.UNREACHABLE)
+        # leg 6: how far it reaches along the axis of its cone on the base
+        along_base_cone_6 = home_along_6_x*span_6_x + home_along_6_y*span_6_y + home_along_6_z*span_6_z
         # leg 6: its joint on the base bends beyond its cone
-        require(status, cos_base_lean_6 >= least_cos_base, Status.UNREACHABLE)
+        require(status, along_base_cone_6 >= l6*least_cos_base, Status.UNREACHABLE)
         cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
         cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
         cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
-        cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
+        # leg 1: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_1 = cone_axis_1_x*span_1_x + cone_axis_1_y*span_1_y + cone_axis_1_z*span_1_z
         # leg 1: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_1 >= least_cos_plate, Status.UNREACHABLE)
+        require(status, along_plate_cone_1 >= l1*least_cos_plate, Status.UNREACHABLE)
         cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
         cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
         cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
-        cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
+        # leg 2: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_2 = cone_axis_2_x*span_2_x + cone_axis_2_y*span_2_y + cone_axis_2_z*span_2_z
         # leg 2: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_2 >= least_cos_plate, Status.UNREACHABLE)
+        require(status, along_plate_cone_2 >= l2*least_cos_plate, Status.UNREACHABLE)
         cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
         cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
         cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
-        cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
+        # leg 3: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_3 = cone_axis_3_x*span_3_x + cone_axis_3_y*span_3_y + cone_axis_3_z*span_3_z
         # leg 3: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_3 >= least_cos_plate, Status.UNREACHABLE)
+        require(status, along_plate_cone_3 >= l3*least_cos_plate, Status.UNREACHABLE)
         cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
         cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
         cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
-        cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
+        # leg 4: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_4 = cone_axis_4_x*span_4_x + cone_axis_4_y*span_4_y + cone_axis_4_z*span_4_z
         # leg 4: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_4 >= least_cos_plate, Status.UNREACHABLE)
+        require(status, along_plate_cone_4 >= l4*least_cos_plate, Status.UNREACHABLE)
         cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
         cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
         cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
-        cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
+        # leg 5: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_5 = cone_axis_5_x*span_5_x + cone_axis_5_y*span_5_y + cone_axis_5_z*span_5_z
         # leg 5: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_5 >= least_cos_plate, Status.UNREACHABLE)
+        require(status, along_plate_cone_5 >= l5*least_cos_plate, Status.UNREACHABLE)
         cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
         cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
         cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
-        cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
+        # leg 6: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_6 = cone_axis_6_x*span_6_x + cone_axis_6_y*span_6_y + cone_axis_6_z*span_6_z
         # leg 6: its joint on the plate bends beyond its cone
-        require(status, cos_plate_lean_6 >= least_cos_plate, Status.UNREACHABLE)
-        moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*one_by_platform_radius
-        moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*one_by_platform_radius
-        moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*one_by_platform_radius
-        moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*one_by_platform_radius
-        moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*one_by_platform_radius
-        moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*one_by_platform_radius
-        moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*one_by_platform_radius
-        moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*one_by_platform_radius
-        moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*one_by_platform_radius
-        moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*one_by_platform_radius
-        moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*one_by_platform_radius
-        moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*one_by_platform_radius
-        moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*one_by_platform_radius
-        moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*one_by_platform_radius
-        moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*one_by_platform_radius
-        moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*one_by_platform_radius
-        moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*one_by_platform_radius
-        moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*one_by_platform_radius
-        # margin of the platform
-        (determinant,) = solve(
+        require(status, along_plate_cone_6 >= l6*least_cos_plate, Status.UNREACHABLE)
+        # leg 1: the moment of its span about the platform's origin
+        moment_1_x = (arm_1_y*span_1_z - arm_1_z*span_1_y)*one_by_platform_radius
+        moment_1_y = (arm_1_z*span_1_x - arm_1_x*span_1_z)*one_by_platform_radius
+        moment_1_z = (arm_1_x*span_1_y - arm_1_y*span_1_x)*one_by_platform_radius
+        # leg 2: the moment of its span about the platform's origin
+        moment_2_x = (arm_2_y*span_2_z - arm_2_z*span_2_y)*one_by_platform_radius
+        moment_2_y = (arm_2_z*span_2_x - arm_2_x*span_2_z)*one_by_platform_radius
+        moment_2_z = (arm_2_x*span_2_y - arm_2_y*span_2_x)*one_by_platform_radius
+        # leg 3: the moment of its span about the platform's origin
+        moment_3_x = (arm_3_y*span_3_z - arm_3_z*span_3_y)*one_by_platform_radius
+        moment_3_y = (arm_3_z*span_3_x - arm_3_x*span_3_z)*one_by_platform_radius
+        moment_3_z = (arm_3_x*span_3_y - arm_3_y*span_3_x)*one_by_platform_radius
+        # leg 4: the moment of its span about the platform's origin
+        moment_4_x = (arm_4_y*span_4_z - arm_4_z*span_4_y)*one_by_platform_radius
+        moment_4_y = (arm_4_z*span_4_x - arm_4_x*span_4_z)*one_by_platform_radius
+        moment_4_z = (arm_4_x*span_4_y - arm_4_y*span_4_x)*one_by_platform_radius
+        # leg 5: the moment of its span about the platform's origin
+        moment_5_x = (arm_5_y*span_5_z - arm_5_z*span_5_y)*one_by_platform_radius
+        moment_5_y = (arm_5_z*span_5_x - arm_5_x*span_5_z)*one_by_platform_radius
+        moment_5_z = (arm_5_x*span_5_y - arm_5_y*span_5_x)*one_by_platform_radius
+        # leg 6: the moment of its span about the platform's origin
+        moment_6_x = (arm_6_y*span_6_z - arm_6_z*span_6_y)*one_by_platform_radius
+        moment_6_y = (arm_6_z*span_6_x - arm_6_x*span_6_z)*one_by_platform_radius
+        moment_6_z = (arm_6_x*span_6_y - arm_6_y*span_6_x)*one_by_platform_radius
+        # the spans of the legs, and their moments
+        (determinant_of_spans,) = solve(
             (
-                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+                (span_1_x, span_1_y, span_1_z, moment_1_x, moment_1_y, moment_1_z),
+                (span_2_x, span_2_y, span_2_z, moment_2_x, moment_2_y, moment_2_z),
+                (span_3_x, span_3_y, span_3_z, moment_3_x, moment_3_y, moment_3_z),
+                (span_4_x, span_4_y, span_4_z, moment_4_x, moment_4_y, moment_4_z),
+                (span_5_x, span_5_y, span_5_z, moment_5_x, moment_5_y, moment_5_z),
+                (span_6_x, span_6_y, span_6_z, moment_6_x, moment_6_y, moment_6_z),
             ),
             (),
         )
+        divisor_1 = select(l1 > machine_scale_times_shortest_link, l1, 1.0)
+        divisor_2 = select(l2 > machine_scale_times_shortest_link, l2, 1.0)
+        divisor_3 = select(l3 > machine_scale_times_shortest_link, l3, 1.0)
+        divisor_4 = select(l4 > machine_scale_times_shortest_link, l4, 1.0)
+        divisor_5 = select(l5 > machine_scale_times_shortest_link, l5, 1.0)
+        divisor_6 = select(l6 > machine_scale_times_shortest_link, l6, 1.0)
+        # the same of their directions: margin of the platform
+        determinant = determinant_of_spans/(divisor_1*divisor_2*divisor_3*divisor_4*divisor_5*divisor_6)
         # rods_dependent: the other assembly mode, or too near to losing the plate
         require(status, assembly_sign*determinant >= min_type2_margin, Status.UNREACHABLE)
         axis_l1 = l1 + offset_l1

@@ -211,156 +211,152 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link_2):
             return (3,)
-        # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
-        along_1_x = span_1_x/divisor_1
-        along_1_y = span_1_y/divisor_1
-        along_1_z = span_1_z/divisor_1
-        cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
+        # leg 1: how far it reaches along the axis of its cone on the base
+        along_base_cone_1 = home_along_1_x*span_1_x + home_along_1_y*span_1_y + home_along_1_z*span_1_z
         # leg 1: its joint on the base bends beyond its cone
-        if not (cos_base_lean_1 >= least_cos_base):
+        if not (along_base_cone_1 >= l1*least_cos_base):
             return (3,)
-        # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
-        along_2_x = span_2_x/divisor_2
-        along_2_y = span_2_y/divisor_2
-        along_2_z = span_2_z/divisor_2
-        cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
+        # leg 2: how far it reaches along the axis of its cone on the base
+        along_base_cone_2 = home_along_2_x*span_2_x + home_along_2_y*span_2_y + home_along_2_z*span_2_z
         # leg 2: its joint on the base bends beyond its cone
-        if not (cos_base_lean_2 >= least_cos_base):
+        if not (along_base_cone_2 >= l2*least_cos_base):
             return (3,)
-        # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
-        along_3_x = span_3_x/divisor_3
-        along_3_y = span_3_y/divisor_3
-        along_3_z = span_3_z/divisor_3
-        cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
+        # leg 3: how far it reaches along the axis of its cone on the base
+        along_base_cone_3 = home_along_3_x*span_3_x + home_along_3_y*span_3_y + home_along_3_z*span_3_z
         # leg 3: its joint on the base bends beyond its cone
-        if not (cos_base_lean_3 >= least_cos_base):
+        if not (along_base_cone_3 >= l3*least_cos_base):
             return (3,)
-        # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
-        along_4_x = span_4_x/divisor_4
-        along_4_y = span_4_y/divisor_4
-        along_4_z = span_4_z/divisor_4
-        cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
+        # leg 4: how far it reaches along the axis of its cone on the base
+        along_base_cone_4 = home_along_4_x*span_4_x + home_along_4_y*span_4_y + home_along_4_z*span_4_z
         # leg 4: its joint on the base bends beyond its cone
-        if not (cos_base_lean_4 >= least_cos_base):
+        if not (along_base_cone_4 >= l4*least_cos_base):
             return (3,)
-        # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
-        along_5_x = span_5_x/divisor_5
-        along_5_y = span_5_y/divisor_5
-        along_5_z = span_5_z/divisor_5
-        cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
+        # leg 5: how far it reaches along the axis of its cone on the base
+        along_base_cone_5 = home_along_5_x*span_5_x + home_along_5_y*span_5_y + home_along_5_z*span_5_z
         # leg 5: its joint on the base bends beyond its cone
-        if not (cos_base_lean_5 >= least_cos_base):
+        if not (along_base_cone_5 >= l5*least_cos_base):
             return (3,)
-        # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
-        along_6_x = span_6_x/divisor_6
-        along_6_y = span_6_y/divisor_6
-        along_6_z = span_6_z/divisor_6
-        cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
+        # leg 6: how far it reaches along the axis of its cone on the base
+        along_base_cone_6 = home_along_6_x*span_6_x + home_along_6_y*span_6_y + home_along_6_z*span_6_z
         # leg 6: its joint on the base bends beyond its cone
-        if not (cos_base_lean_6 >= least_cos_base):
+        if not (along_base_cone_6 >= l6*least_cos_base):
             return (3,)
         cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
         cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
         cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
-        cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
+        # leg 1: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_1 = cone_axis_1_x*span_1_x + cone_axis_1_y*span_1_y + cone_axis_1_z*span_1_z
         # leg 1: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_1 >= least_cos_plate):
+        if not (along_plate_cone_1 >= l1*least_cos_plate):
             return (3,)
         cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
         cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
         cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
-        cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
+        # leg 2: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_2 = cone_axis_2_x*span_2_x + cone_axis_2_y*span_2_y + cone_axis_2_z*span_2_z
         # leg 2: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_2 >= least_cos_plate):
+        if not (along_plate_cone_2 >= l2*least_cos_plate):
             return (3,)
         cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
         cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
         cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
-        cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
+        # leg 3: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_3 = cone_axis_3_x*span_3_x + cone_axis_3_y*span_3_y + cone_axis_3_z*span_3_z
         # leg 3: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_3 >= least_cos_plate):
+        if not (along_plate_cone_3 >= l3*least_cos_plate):
             return (3,)
         cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
         cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
         cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
-        cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
+        # leg 4: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_4 = cone_axis_4_x*span_4_x + cone_axis_4_y*span_4_y + cone_axis_4_z*span_4_z
         # leg 4: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_4 >= least_cos_plate):
+        if not (along_plate_cone_4 >= l4*least_cos_plate):
             return (3,)
         cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
         cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
         cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
-        cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
+        # leg 5: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_5 = cone_axis_5_x*span_5_x + cone_axis_5_y*span_5_y + cone_axis_5_z*span_5_z
         # leg 5: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_5 >= least_cos_plate):
+        if not (along_plate_cone_5 >= l5*least_cos_plate):
             return (3,)
         cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
         cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
         cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
-        cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
+        # leg 6: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_6 = cone_axis_6_x*span_6_x + cone_axis_6_y*span_6_y + cone_axis_6_z*span_6_z
         # leg 6: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_6 >= least_cos_plate):
+        if not (along_plate_cone_6 >= l6*least_cos_plate):
             return (3,)
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
         arm_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23
         arm_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33
+        # leg 1: the moment of its span about the platform's origin
+        moment_1_x = (arm_1_y*span_1_z - arm_1_z*span_1_y)/platform_radius
         arm_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13
         arm_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23
         arm_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33
+        # leg 2: the moment of its span about the platform's origin
+        moment_2_x = (arm_2_y*span_2_z - arm_2_z*span_2_y)/platform_radius
         arm_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13
         arm_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23
         arm_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33
+        # leg 3: the moment of its span about the platform's origin
+        moment_3_x = (arm_3_y*span_3_z - arm_3_z*span_3_y)/platform_radius
         arm_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13
         arm_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23
         arm_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33
+        # leg 4: the moment of its span about the platform's origin
+        moment_4_x = (arm_4_y*span_4_z - arm_4_z*span_4_y)/platform_radius
         arm_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13
         arm_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23
         arm_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33
+        # leg 5: the moment of its span about the platform's origin
+        moment_5_x = (arm_5_y*span_5_z - arm_5_z*span_5_y)/platform_radius
         arm_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13
         arm_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23
         arm_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33
+        # leg 6: the moment of its span about the platform's origin
+        moment_6_x = (arm_6_y*span_6_z - arm_6_z*span_6_y)/platform_radius
         arm_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13
-        # margin of the platform
-        (determinant,) = solve(
+        # the spans of the legs, and their moments
+        (determinant_of_spans,) = solve(
             (
                 (
-                    along_1_x, along_1_y, along_1_z, (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius,
-                    (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius,
-                    (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius,
+                    span_1_x, span_1_y, span_1_z, moment_1_x, (arm_1_z*span_1_x - arm_1_x*span_1_z)/platform_radius,
+                    (arm_1_x*span_1_y - arm_1_y*span_1_x)/platform_radius,
                 ),
                 (
-                    along_2_x, along_2_y, along_2_z, (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius,
-                    (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius,
-                    (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius,
+                    span_2_x, span_2_y, span_2_z, moment_2_x, (arm_2_z*span_2_x - arm_2_x*span_2_z)/platform_radius,
+                    (arm_2_x*span_2_y - arm_2_y*span_2_x)/platform_radius,
                 ),
                 (
-                    along_3_x, along_3_y, along_3_z, (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius,
-                    (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius,
-                    (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius,
+                    span_3_x, span_3_y, span_3_z, moment_3_x, (arm_3_z*span_3_x - arm_3_x*span_3_z)/platform_radius,
+                    (arm_3_x*span_3_y - arm_3_y*span_3_x)/platform_radius,
                 ),
                 (
-                    along_4_x, along_4_y, along_4_z, (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius,
-                    (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius,
-                    (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius,
+                    span_4_x, span_4_y, span_4_z, moment_4_x, (arm_4_z*span_4_x - arm_4_x*span_4_z)/platform_radius,
+                    (arm_4_x*span_4_y - arm_4_y*span_4_x)/platform_radius,
                 ),
                 (
-                    along_5_x, along_5_y, along_5_z, (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius,
-                    (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius,
-                    (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius,
+                    span_5_x, span_5_y, span_5_z, moment_5_x, (arm_5_z*span_5_x - arm_5_x*span_5_z)/platform_radius,
+                    (arm_5_x*span_5_y - arm_5_y*span_5_x)/platform_radius,
                 ),
                 (
-                    along_6_x, along_6_y, along_6_z, (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius,
-                    (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius,
-                    (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius,
+                    span_6_x, span_6_y, span_6_z, moment_6_x, (arm_6_z*span_6_x - arm_6_x*span_6_z)/platform_radius,
+                    (arm_6_x*span_6_y - arm_6_y*span_6_x)/platform_radius,
                 ),
             ),
             (),
         )
+        # the same of their directions: margin of the platform
+        determinant = determinant_of_spans/(divisor_1*divisor_2*divisor_3*divisor_4*divisor_5*divisor_6)
         # rods_dependent: the other assembly mode, or too near to losing the plate
         if not (assembly_sign*determinant >= min_type2_margin):
             return (3,)
@@ -485,156 +481,152 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link_2):
             return (None,)
-        # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
-        along_1_x = span_1_x/divisor_1
-        along_1_y = span_1_y/divisor_1
-        along_1_z = span_1_z/divisor_1
-        cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
+        # leg 1: how far it reaches along the axis of its cone on the base
+        along_base_cone_1 = home_along_1_x*span_1_x + home_along_1_y*span_1_y + home_along_1_z*span_1_z
         # leg 1: its joint on the base bends beyond its cone
-        if not (cos_base_lean_1 >= least_cos_base):
+        if not (along_base_cone_1 >= l1*least_cos_base):
             return (None,)
-        # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
-        along_2_x = span_2_x/divisor_2
-        along_2_y = span_2_y/divisor_2
-        along_2_z = span_2_z/divisor_2
-        cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
+        # leg 2: how far it reaches along the axis of its cone on the base
+        along_base_cone_2 = home_along_2_x*span_2_x + home_along_2_y*span_2_y + home_along_2_z*span_2_z
         # leg 2: its joint on the base bends beyond its cone
-        if not (cos_base_lean_2 >= least_cos_base):
+        if not (along_base_cone_2 >= l2*least_cos_base):
             return (None,)
-        # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
-        along_3_x = span_3_x/divisor_3
-        along_3_y = span_3_y/divisor_3
-        along_3_z = span_3_z/divisor_3
-        cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
+        # leg 3: how far it reaches along the axis of its cone on the base
+        along_base_cone_3 = home_along_3_x*span_3_x + home_along_3_y*span_3_y + home_along_3_z*span_3_z
         # leg 3: its joint on the base bends beyond its cone
-        if not (cos_base_lean_3 >= least_cos_base):
+        if not (along_base_cone_3 >= l3*least_cos_base):
             return (None,)
-        # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
-        along_4_x = span_4_x/divisor_4
-        along_4_y = span_4_y/divisor_4
-        along_4_z = span_4_z/divisor_4
-        cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
+        # leg 4: how far it reaches along the axis of its cone on the base
+        along_base_cone_4 = home_along_4_x*span_4_x + home_along_4_y*span_4_y + home_along_4_z*span_4_z
         # leg 4: its joint on the base bends beyond its cone
-        if not (cos_base_lean_4 >= least_cos_base):
+        if not (along_base_cone_4 >= l4*least_cos_base):
             return (None,)
-        # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
-        along_5_x = span_5_x/divisor_5
-        along_5_y = span_5_y/divisor_5
-        along_5_z = span_5_z/divisor_5
-        cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
+        # leg 5: how far it reaches along the axis of its cone on the base
+        along_base_cone_5 = home_along_5_x*span_5_x + home_along_5_y*span_5_y + home_along_5_z*span_5_z
         # leg 5: its joint on the base bends beyond its cone
-        if not (cos_base_lean_5 >= least_cos_base):
+        if not (along_base_cone_5 >= l5*least_cos_base):
             return (None,)
-        # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
-        along_6_x = span_6_x/divisor_6
-        along_6_y = span_6_y/divisor_6
-        along_6_z = span_6_z/divisor_6
-        cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
+        # leg 6: how far it reaches along the axis of its cone on the base
+        along_base_cone_6 = home_along_6_x*span_6_x + home_along_6_y*span_6_y + home_along_6_z*span_6_z
         # leg 6: its joint on the base bends beyond its cone
-        if not (cos_base_lean_6 >= least_cos_base):
+        if not (along_base_cone_6 >= l6*least_cos_base):
             return (None,)
         cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
         cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
         cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
-        cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
+        # leg 1: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_1 = cone_axis_1_x*span_1_x + cone_axis_1_y*span_1_y + cone_axis_1_z*span_1_z
         # leg 1: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_1 >= least_cos_plate):
+        if not (along_plate_cone_1 >= l1*least_cos_plate):
             return (None,)
         cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
         cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
         cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
-        cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
+        # leg 2: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_2 = cone_axis_2_x*span_2_x + cone_axis_2_y*span_2_y + cone_axis_2_z*span_2_z
         # leg 2: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_2 >= least_cos_plate):
+        if not (along_plate_cone_2 >= l2*least_cos_plate):
             return (None,)
         cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
         cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
         cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
-        cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
+        # leg 3: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_3 = cone_axis_3_x*span_3_x + cone_axis_3_y*span_3_y + cone_axis_3_z*span_3_z
         # leg 3: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_3 >= least_cos_plate):
+        if not (along_plate_cone_3 >= l3*least_cos_plate):
             return (None,)
         cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
         cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
         cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
-        cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
+        # leg 4: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_4 = cone_axis_4_x*span_4_x + cone_axis_4_y*span_4_y + cone_axis_4_z*span_4_z
         # leg 4: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_4 >= least_cos_plate):
+        if not (along_plate_cone_4 >= l4*least_cos_plate):
             return (None,)
         cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
         cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
         cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
-        cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
+        # leg 5: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_5 = cone_axis_5_x*span_5_x + cone_axis_5_y*span_5_y + cone_axis_5_z*span_5_z
         # leg 5: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_5 >= least_cos_plate):
+        if not (along_plate_cone_5 >= l5*least_cos_plate):
             return (None,)
         cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
         cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
         cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
-        cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
+        # leg 6: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_6 = cone_axis_6_x*span_6_x + cone_axis_6_y*span_6_y + cone_axis_6_z*span_6_z
         # leg 6: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_6 >= least_cos_plate):
+        if not (along_plate_cone_6 >= l6*least_cos_plate):
             return (None,)
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
         arm_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23
         arm_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33
+        # leg 1: the moment of its span about the platform's origin
+        moment_1_x = (arm_1_y*span_1_z - arm_1_z*span_1_y)/platform_radius
         arm_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13
         arm_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23
         arm_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33
+        # leg 2: the moment of its span about the platform's origin
+        moment_2_x = (arm_2_y*span_2_z - arm_2_z*span_2_y)/platform_radius
         arm_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13
         arm_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23
         arm_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33
+        # leg 3: the moment of its span about the platform's origin
+        moment_3_x = (arm_3_y*span_3_z - arm_3_z*span_3_y)/platform_radius
         arm_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13
         arm_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23
         arm_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33
+        # leg 4: the moment of its span about the platform's origin
+        moment_4_x = (arm_4_y*span_4_z - arm_4_z*span_4_y)/platform_radius
         arm_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13
         arm_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23
         arm_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33
+        # leg 5: the moment of its span about the platform's origin
+        moment_5_x = (arm_5_y*span_5_z - arm_5_z*span_5_y)/platform_radius
         arm_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13
         arm_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23
         arm_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33
+        # leg 6: the moment of its span about the platform's origin
+        moment_6_x = (arm_6_y*span_6_z - arm_6_z*span_6_y)/platform_radius
         arm_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13
-        # margin of the platform
-        (determinant,) = solve(
+        # the spans of the legs, and their moments
+        (determinant_of_spans,) = solve(
             (
                 (
-                    along_1_x, along_1_y, along_1_z, (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius,
-                    (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius,
-                    (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius,
+                    span_1_x, span_1_y, span_1_z, moment_1_x, (arm_1_z*span_1_x - arm_1_x*span_1_z)/platform_radius,
+                    (arm_1_x*span_1_y - arm_1_y*span_1_x)/platform_radius,
                 ),
                 (
-                    along_2_x, along_2_y, along_2_z, (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius,
-                    (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius,
-                    (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius,
+                    span_2_x, span_2_y, span_2_z, moment_2_x, (arm_2_z*span_2_x - arm_2_x*span_2_z)/platform_radius,
+                    (arm_2_x*span_2_y - arm_2_y*span_2_x)/platform_radius,
                 ),
                 (
-                    along_3_x, along_3_y, along_3_z, (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius,
-                    (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius,
-                    (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius,
+                    span_3_x, span_3_y, span_3_z, moment_3_x, (arm_3_z*span_3_x - arm_3_x*span_3_z)/platform_radius,
+                    (arm_3_x*span_3_y - arm_3_y*span_3_x)/platform_radius,
                 ),
                 (
-                    along_4_x, along_4_y, along_4_z, (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius,
-                    (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius,
-                    (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius,
+                    span_4_x, span_4_y, span_4_z, moment_4_x, (arm_4_z*span_4_x - arm_4_x*span_4_z)/platform_radius,
+                    (arm_4_x*span_4_y - arm_4_y*span_4_x)/platform_radius,
                 ),
                 (
-                    along_5_x, along_5_y, along_5_z, (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius,
-                    (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius,
-                    (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius,
+                    span_5_x, span_5_y, span_5_z, moment_5_x, (arm_5_z*span_5_x - arm_5_x*span_5_z)/platform_radius,
+                    (arm_5_x*span_5_y - arm_5_y*span_5_x)/platform_radius,
                 ),
                 (
-                    along_6_x, along_6_y, along_6_z, (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius,
-                    (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius,
-                    (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius,
+                    span_6_x, span_6_y, span_6_z, moment_6_x, (arm_6_z*span_6_x - arm_6_x*span_6_z)/platform_radius,
+                    (arm_6_x*span_6_y - arm_6_y*span_6_x)/platform_radius,
                 ),
             ),
             (),
         )
+        # the same of their directions: margin of the platform
+        determinant = determinant_of_spans/(divisor_1*divisor_2*divisor_3*divisor_4*divisor_5*divisor_6)
         # rods_dependent: the other assembly mode, or too near to losing the plate
         if not (assembly_sign*determinant >= min_type2_margin):
             return (None,)
@@ -699,156 +691,152 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link_2):
             return None
-        # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
-        along_1_x = span_1_x/divisor_1
-        along_1_y = span_1_y/divisor_1
-        along_1_z = span_1_z/divisor_1
-        cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
+        # leg 1: how far it reaches along the axis of its cone on the base
+        along_base_cone_1 = home_along_1_x*span_1_x + home_along_1_y*span_1_y + home_along_1_z*span_1_z
         # leg 1: its joint on the base bends beyond its cone
-        if not (cos_base_lean_1 >= least_cos_base):
+        if not (along_base_cone_1 >= l1*least_cos_base):
             return None
-        # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
-        along_2_x = span_2_x/divisor_2
-        along_2_y = span_2_y/divisor_2
-        along_2_z = span_2_z/divisor_2
-        cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
+        # leg 2: how far it reaches along the axis of its cone on the base
+        along_base_cone_2 = home_along_2_x*span_2_x + home_along_2_y*span_2_y + home_along_2_z*span_2_z
         # leg 2: its joint on the base bends beyond its cone
-        if not (cos_base_lean_2 >= least_cos_base):
+        if not (along_base_cone_2 >= l2*least_cos_base):
             return None
-        # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
-        along_3_x = span_3_x/divisor_3
-        along_3_y = span_3_y/divisor_3
-        along_3_z = span_3_z/divisor_3
-        cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
+        # leg 3: how far it reaches along the axis of its cone on the base
+        along_base_cone_3 = home_along_3_x*span_3_x + home_along_3_y*span_3_y + home_along_3_z*span_3_z
         # leg 3: its joint on the base bends beyond its cone
-        if not (cos_base_lean_3 >= least_cos_base):
+        if not (along_base_cone_3 >= l3*least_cos_base):
             return None
-        # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
-        along_4_x = span_4_x/divisor_4
-        along_4_y = span_4_y/divisor_4
-        along_4_z = span_4_z/divisor_4
-        cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
+        # leg 4: how far it reaches along the axis of its cone on the base
+        along_base_cone_4 = home_along_4_x*span_4_x + home_along_4_y*span_4_y + home_along_4_z*span_4_z
         # leg 4: its joint on the base bends beyond its cone
-        if not (cos_base_lean_4 >= least_cos_base):
+        if not (along_base_cone_4 >= l4*least_cos_base):
             return None
-        # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
-        along_5_x = span_5_x/divisor_5
-        along_5_y = span_5_y/divisor_5
-        along_5_z = span_5_z/divisor_5
-        cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
+        # leg 5: how far it reaches along the axis of its cone on the base
+        along_base_cone_5 = home_along_5_x*span_5_x + home_along_5_y*span_5_y + home_along_5_z*span_5_z
         # leg 5: its joint on the base bends beyond its cone
-        if not (cos_base_lean_5 >= least_cos_base):
+        if not (along_base_cone_5 >= l5*least_cos_base):
             return None
-        # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
-        along_6_x = span_6_x/divisor_6
-        along_6_y = span_6_y/divisor_6
-        along_6_z = span_6_z/divisor_6
-        cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
+        # leg 6: how far it reaches along the axis of its cone on the base
+        along_base_cone_6 = home_along_6_x*span_6_x + home_along_6_y*span_6_y + home_along_6_z*span_6_z
         # leg 6: its joint on the base bends beyond its cone
-        if not (cos_base_lean_6 >= least_cos_base):
+        if not (along_base_cone_6 >= l6*least_cos_base):
             return None
         cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
         cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
         cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
-        cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
+        # leg 1: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_1 = cone_axis_1_x*span_1_x + cone_axis_1_y*span_1_y + cone_axis_1_z*span_1_z
         # leg 1: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_1 >= least_cos_plate):
+        if not (along_plate_cone_1 >= l1*least_cos_plate):
             return None
         cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
         cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
         cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
-        cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
+        # leg 2: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_2 = cone_axis_2_x*span_2_x + cone_axis_2_y*span_2_y + cone_axis_2_z*span_2_z
         # leg 2: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_2 >= least_cos_plate):
+        if not (along_plate_cone_2 >= l2*least_cos_plate):
             return None
         cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
         cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
         cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
-        cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
+        # leg 3: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_3 = cone_axis_3_x*span_3_x + cone_axis_3_y*span_3_y + cone_axis_3_z*span_3_z
         # leg 3: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_3 >= least_cos_plate):
+        if not (along_plate_cone_3 >= l3*least_cos_plate):
             return None
         cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
         cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
         cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
-        cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
+        # leg 4: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_4 = cone_axis_4_x*span_4_x + cone_axis_4_y*span_4_y + cone_axis_4_z*span_4_z
         # leg 4: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_4 >= least_cos_plate):
+        if not (along_plate_cone_4 >= l4*least_cos_plate):
             return None
         cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
         cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
         cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
-        cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
+        # leg 5: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_5 = cone_axis_5_x*span_5_x + cone_axis_5_y*span_5_y + cone_axis_5_z*span_5_z
         # leg 5: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_5 >= least_cos_plate):
+        if not (along_plate_cone_5 >= l5*least_cos_plate):
             return None
         cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
         cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
         cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
-        cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
+        # leg 6: how far it reaches along the axis of its cone on the plate
+        along_plate_cone_6 = cone_axis_6_x*span_6_x + cone_axis_6_y*span_6_y + cone_axis_6_z*span_6_z
         # leg 6: its joint on the plate bends beyond its cone
-        if not (cos_plate_lean_6 >= least_cos_plate):
+        if not (along_plate_cone_6 >= l6*least_cos_plate):
             return None
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link_2 else 1.0
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link_2 else 1.0
         arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
         arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
+        # leg 1: the moment of its span about the platform's origin
+        moment_1_x = (arm_1_y*span_1_z - arm_1_z*span_1_y)/platform_radius
         arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
         arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
         arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
+        # leg 2: the moment of its span about the platform's origin
+        moment_2_x = (arm_2_y*span_2_z - arm_2_z*span_2_y)/platform_radius
         arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
         arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
         arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
+        # leg 3: the moment of its span about the platform's origin
+        moment_3_x = (arm_3_y*span_3_z - arm_3_z*span_3_y)/platform_radius
         arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
         arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
         arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
+        # leg 4: the moment of its span about the platform's origin
+        moment_4_x = (arm_4_y*span_4_z - arm_4_z*span_4_y)/platform_radius
         arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
         arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
         arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
+        # leg 5: the moment of its span about the platform's origin
+        moment_5_x = (arm_5_y*span_5_z - arm_5_z*span_5_y)/platform_radius
         arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
         arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
         arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
+        # leg 6: the moment of its span about the platform's origin
+        moment_6_x = (arm_6_y*span_6_z - arm_6_z*span_6_y)/platform_radius
         arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
-        # margin of the platform
-        (determinant,) = solve(
+        # the spans of the legs, and their moments
+        (determinant_of_spans,) = solve(
             (
                 (
-                    along_1_x, along_1_y, along_1_z, (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius,
-                    (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius,
-                    (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius,
+                    span_1_x, span_1_y, span_1_z, moment_1_x, (arm_1_z*span_1_x - arm_1_x*span_1_z)/platform_radius,
+                    (arm_1_x*span_1_y - arm_1_y*span_1_x)/platform_radius,
                 ),
                 (
-                    along_2_x, along_2_y, along_2_z, (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius,
-                    (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius,
-                    (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius,
+                    span_2_x, span_2_y, span_2_z, moment_2_x, (arm_2_z*span_2_x - arm_2_x*span_2_z)/platform_radius,
+                    (arm_2_x*span_2_y - arm_2_y*span_2_x)/platform_radius,
                 ),
                 (
-                    along_3_x, along_3_y, along_3_z, (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius,
-                    (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius,
-                    (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius,
+                    span_3_x, span_3_y, span_3_z, moment_3_x, (arm_3_z*span_3_x - arm_3_x*span_3_z)/platform_radius,
+                    (arm_3_x*span_3_y - arm_3_y*span_3_x)/platform_radius,
                 ),
                 (
-                    along_4_x, along_4_y, along_4_z, (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius,
-                    (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius,
-                    (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius,
+                    span_4_x, span_4_y, span_4_z, moment_4_x, (arm_4_z*span_4_x - arm_4_x*span_4_z)/platform_radius,
+                    (arm_4_x*span_4_y - arm_4_y*span_4_x)/platform_radius,
                 ),
                 (
-                    along_5_x, along_5_y, along_5_z, (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius,
-                    (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius,
-                    (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius,
+                    span_5_x, span_5_y, span_5_z, moment_5_x, (arm_5_z*span_5_x - arm_5_x*span_5_z)/platform_radius,
+                    (arm_5_x*span_5_y - arm_5_y*span_5_x)/platform_radius,
                 ),
                 (
-                    along_6_x, along_6_y, along_6_z, (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius,
-                    (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius,
-                    (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius,
+                    span_6_x, span_6_y, span_6_z, moment_6_x, (arm_6_z*span_6_x - arm_6_x*span_6_z)/platform_radius,
+                    (arm_6_x*span_6_y - arm_6_y*span_6_x)/platform_radius,
                 ),
             ),
             (),
         )
+        # the same of their directions: margin of the platform
+        determinant = determinant_of_spans/(divisor_1*divisor_2*divisor_3*divisor_4*divisor_5*divisor_6)
         # rods_dependent: the other assembly mode, or too near to losing the plate
         if not (assembly_sign*determinant >= min_type2_margin):
             return None
