@@ -228,13 +228,13 @@ def solve(matrix: Array, right: Array) -> tuple[Array, Array]:
             np.put_along_axis(table, np.broadcast_to(best[None, None], (1, *lifted.shape)), lifted[None], axis=0)
         determinant = np.where(best == k, determinant, -determinant) * matrix[k, k]
         regular &= np.abs(matrix[k, k]) > tiny
-        divisor = np.where(regular, matrix[k, k], 1.0)
+        matrix[k, k] = 1.0 / np.where(regular, matrix[k, k], 1.0)
         for i in range(k + 1, size):
-            factor = matrix[i, k] / divisor
+            factor = matrix[i, k] * matrix[k, k]
             matrix[i, k + 1 :] -= factor * matrix[k, k + 1 :]
             right[i] -= factor * right[k]
     for k in reversed(range(size)):
         for i in range(k + 1, size):
             right[k] -= matrix[k, i] * right[i]
-        right[k] /= np.where(regular, matrix[k, k], 1.0)
+        right[k] *= matrix[k, k]
     return np.where(regular, determinant, 0.0), np.where(regular, right, 0.0)

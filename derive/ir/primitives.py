@@ -68,9 +68,12 @@ class NearestOnArc(sp.Function):
     nargs = 3
 
 
-def angle_of_cosine(cosine: sp.Expr) -> sp.Expr:
-    """The angle in radians, 0 to pi, that has this cosine."""
-    return Atan2(Root(1 - cosine**2), cosine)
+_ONE = sp.Integer(1)
+
+
+def angle_of_cosine(adjacent: sp.Expr, hypotenuse: sp.Expr = _ONE) -> sp.Expr:
+    """The angle in radians, 0 to pi, whose cosine is adjacent over hypotenuse, which is positive."""
+    return Atan2(Root((hypotenuse - adjacent) * (hypotenuse + adjacent)), adjacent)
 
 
 def angle_of_sine(sine: sp.Expr) -> sp.Expr:

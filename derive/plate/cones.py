@@ -1,7 +1,8 @@
 """The cones of a rod's joints: the largest angle between a rod and its direction at the home pose.
 
 Let u be the unit vector along the rod in the frame of the base, and R^T u the same in the frame of the plate. At the home pose
-these are u0 and R0^T u0, the axes of the two cones. A joint leans by the angle between the rod and the axis of its cone.
+these are u0 and R0^T u0, the axes of the two cones. A joint leans by the angle between the rod and the axis of its cone. What
+is compared is the span along that axis and the length of the rod times the least cosine: no unit vector is needed.
 """
 
 from __future__ import annotations
@@ -72,8 +73,9 @@ def _inside(side: str, cones: Sequence[tuple[Rod, sp.Expr]], axis: str) -> Itera
         narrow = sp.Gt(sp.cos(cone), BOUNDARY - 1)
         yield Let(name, Select(narrow, sp.cos(cone) - BOUNDARY, sp.Integer(-2)), f"least cosine of a leg's lean on the {side}")
     for rod, cone in cones:
-        lean = of(f"cos_{side}_lean", rod)
-        yield Let(lean, sp.Add(*[a * b for a, b in zip(names("along", rod), names(axis, rod), strict=True)]))
-        beyond = angle_of_cosine(lean) - angle_of_cosine(least[cone])
+        ahead = of(f"along_{side}_cone", rod)
+        note = f"leg {rod.name}: how far it reaches along the axis of its cone on the {side}"
+        yield Let(ahead, sp.Add(*[a * b for a, b in zip(names("span", rod), names(axis, rod), strict=True)]), note)
+        beyond = angle_of_cosine(ahead, rod.length) - angle_of_cosine(least[cone])
         reason = about_leg(rod.name, _BEYOND[side], beyond / DEGREE, Unit.ANGLE)
-        yield Require(sp.Ge(lean, least[cone]), Status.UNREACHABLE, reason=reason)
+        yield Require(sp.Ge(ahead, least[cone] * rod.length), Status.UNREACHABLE, reason=reason)

@@ -91,14 +91,28 @@ def length(rod: Rod) -> Let:
 
 def row(rod: Rod, arm: Sequence[sp.Expr], measured: sp.Expr) -> tuple[Let, ...]:
     """A row of A: the unit vector along a span of known length, and its moment about the origin of the plate."""
-    along, divisor = names("along", rod), of("divisor", rod)
-    moment = sp.Matrix(list(arm)).cross(sp.Matrix(along)) / RADIUS
+    along, one = names("along", rod), divisor(rod, measured)
     lets = (
-        Let(divisor, Select(sp.Gt(measured, SHORTEST_LINK * SCALE), measured, sp.Integer(1))),
-        *(Let(a, s / divisor) for a, s in zip(along, names("span", rod), strict=True)),
-        *(Let(n, v) for n, v in zip(names("moment", rod), moment, strict=True)),
+        one,
+        *(Let(a, s / one.name) for a, s in zip(along, names("span", rod), strict=True)),
+        *_moment(rod, arm, along),
     )
     return with_note(lets, f"leg {rod.name} as a line: unit vector, and its moment about the platform's origin")
+
+
+def span_moment(rod: Rod, arm: Sequence[sp.Expr]) -> tuple[Let, ...]:
+    """The moment in a row of A, times the length of the leg: nothing is divided."""
+    return with_note(_moment(rod, arm, names("span", rod)), f"leg {rod.name}: the moment of its span about the platform's origin")
+
+
+def _moment(rod: Rod, arm: Sequence[sp.Expr], vector: Sequence[sp.Expr]) -> tuple[Let, ...]:
+    moment = sp.Matrix(list(arm)).cross(sp.Matrix(list(vector))) / RADIUS
+    return tuple(Let(n, v) for n, v in zip(names("moment", rod), moment, strict=True))
+
+
+def divisor(rod: Rod, measured: sp.Expr) -> Let:
+    """The length of a leg; 1 where the leg is too short to have a direction."""
+    return Let(of("divisor", rod), Select(sp.Gt(measured, SHORTEST_LINK * SCALE), measured, sp.Integer(1)))
 
 
 def with_note(lets: Iterable[Let], note: str) -> tuple[Let, ...]:
@@ -107,6 +121,6 @@ def with_note(lets: Iterable[Let], note: str) -> tuple[Let, ...]:
     return (replace(first, note=note), *others)
 
 
-def rows(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
-    """The names of the entries of A, by rows."""
-    return tuple(entry for rod in mechanism.rods for word in ("along", "moment") for entry in names(word, rod))
+def rows(mechanism: Mechanism, vector: str = "along") -> tuple[sp.Symbol, ...]:
+    """The names of the entries of A, by rows. With the vector "span" each row is multiplied by the length of its leg."""
+    return tuple(entry for rod in mechanism.rods for word in (vector, "moment") for entry in names(word, rod))

@@ -1,6 +1,7 @@
 """A platform on six rods that moves with its whole pose: its home pose, the checks of its inverse, and its singularity.
 
-det A (see `legs`) is the margin: it is zero where the lines of the rods belong to one linear complex (type 2).
+det A (see `legs`) is the margin: it is zero where the lines of the rods belong to one linear complex (type 2). The inverse
+computes it from the spans of the legs, and divides by their lengths at the end.
 """
 
 from __future__ import annotations
@@ -51,6 +52,7 @@ from derive.plate.legs import (
     MARGIN,
     RADIUS,
     by_angles,
+    divisor,
     length,
     names,
     of,
@@ -58,6 +60,7 @@ from derive.plate.legs import (
     row,
     rows,
     span,
+    span_moment,
     turned,
 )
 
@@ -126,14 +129,16 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
     lets: list[Let] = []
     for rod in mechanism.rods:
         arm = names("arm", rod)
-        found = (*turned(ROTATION_ENTRIES, point_of(rod), arm), *span(rod, POSITION, arm, rod.base), *row(rod, arm, rod.length))
-        lets += [let for let in found if let.name not in bound]
+        vectors = (*turned(ROTATION_ENTRIES, point_of(rod), arm), *span(rod, POSITION, arm, rod.base), *span_moment(rod, arm))
+        lets += [let for let in (*vectors, divisor(rod, rod.length)) if let.name not in bound]
     margin, least = ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN)
+    of_spans, lengths = real("determinant_of_spans"), sp.Mul(*[of("divisor", rod) for rod in mechanism.rods])
     return (
         *lets,
         *(_long_enough(rod) for rod in mechanism.rods),
         *cone_checks(mechanism),
-        Solve((), rows(mechanism), (), DETERMINANT, "determinant of the legs as lines: zero in a type 2 singularity"),
+        Solve((), rows(mechanism, "span"), (), of_spans, "determinant of the spans of the legs and their moments"),
+        Let(DETERMINANT, of_spans / lengths, "the same of unit vectors: margin of the platform, zero in a type 2 singularity"),
         Require(sp.Ge(margin, least), Status.UNREACHABLE, reason=about(MARGIN, Why.NEAR_TYPE_2, least - margin)),
     )
 

@@ -166,11 +166,8 @@ def solve_cost(size: int, columns: int) -> Cost:
     """What linear equations cost: elimination with its pivots, the determinant, and the way back."""
     eliminated = sum(rows * (rows + columns) for rows in range(size))
     back = columns * size * (size - 1) // 2
-    return Cost(
-        additions=eliminated + back,
-        multiplications=eliminated + back + 2 * size,
-        divisions=size * (size - 1) // 2 + size * columns,
-    )
+    by_inverses = size * (size - 1) // 2 + size * columns
+    return Cost(additions=eliminated + back, multiplications=eliminated + back + by_inverses + 2 * size, divisions=size)
 
 
 def _item(item: Item, of_sides: _OfSides) -> Cost:

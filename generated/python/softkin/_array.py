@@ -297,13 +297,13 @@ def solve(matrix: Sequence[Reals], right: Sequence[Reals]) -> Reals:
         table[k] = chosen
         determinant = np.where(best == k, determinant, -determinant) * table[k, k]
         regular &= np.abs(table[k, k]) > tiny
-        divisor = np.where(regular, table[k, k], 1.0)
-        factors = table[k + 1 :, k] / divisor
+        table[k, k] = 1.0 / np.where(regular, table[k, k], 1.0)
+        factors = table[k + 1 :, k] * table[k, k]
         table[k + 1 :, k + 1 :] -= factors[:, None] * table[k, k + 1 :]
     for k in reversed(range(size)):
         for i in range(k + 1, size):
             table[k, size:] -= table[k, i] * table[i, size:]
-        table[k, size:] /= np.where(regular, table[k, k], 1.0)
+        table[k, size:] *= table[k, k]
     solution = np.where(regular, table[:, size:], 0.0)
     found = np.where(regular, determinant, 0.0), *solution.reshape(-1, len(tiny))
     return tuple([value.reshape(entries[0].shape) for value in found])

@@ -90,13 +90,14 @@ def solve(matrix: Sequence[Sequence[float]], right: Sequence[Sequence[float]]) -
             rows[k], rows[best] = rows[best], rows[k]
             determinant = -determinant
         determinant *= rows[k][k]
+        rows[k][k] = 1.0 / rows[k][k]
         for i in range(k + 1, size):
-            factor = rows[i][k] / rows[k][k]
+            factor = rows[i][k] * rows[k][k]
             for j in range(k + 1, width):
                 rows[i][j] -= factor * rows[k][j]
     for k in reversed(range(size)):
         for j in range(size, width):
             for i in range(k + 1, size):
                 rows[k][j] -= rows[k][i] * rows[i][j]
-            rows[k][j] /= rows[k][k]
+            rows[k][j] *= rows[k][k]
     return (determinant, *(entry for row in rows for entry in row[size:]))

@@ -50,7 +50,7 @@ WRONG = {
     "a Jacobian per platform radius": Fault(_JACOBIAN, "*oneByPlatformRadius", ""),
     "a margin": Fault("PUBLIC IsSingularity", "ABS(determinant) < 0.001", "ABS(determinant) < 10.0"),
     "a length": Fault(_INVERSE, "span2Y*span2Y", "span2X*span2Y"),
-    "a cone": Fault(_INVERSE, "cosBaseLean1 >= leastCosBase", "cosBaseLean1 >= 0.999999"),
+    "a cone": Fault(_INVERSE, "alongBaseCone1 >= l1*leastCosBase", "alongBaseCone1 >= l1*0.999999"),
 }  # fmt: skip
 
 
